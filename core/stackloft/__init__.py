@@ -1,0 +1,1 @@
+"""Volume and surface area of irregular solids from slice photographs and scans."""

@@ -1,0 +1,26 @@
+"""A method: a named chain of plug-ins from a product to figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """A named method.
+
+    Examples
+    --------
+    >>> Recipe(steps=("reconstructor.loft", "integrator.surface-gauss"), summary="loft, Gauss").steps[-1]
+    'integrator.surface-gauss'
+    """
+
+    steps: tuple[str, ...]
+    """``family.name`` of each plug-in in order; the last is an integrator."""
+    summary: str
+    """One sentence for people: what is done, what it assumes, which way it errs."""
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Options that this method sets, by ``family.name``; the person's own settings win."""
+    api: str = "1"

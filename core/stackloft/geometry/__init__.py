@@ -1,0 +1,1 @@
+"""Mathematics on plain arrays: no files, no logging, no model types."""

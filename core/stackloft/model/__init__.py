@@ -1,0 +1,1 @@
+"""Values that flow through stackloft: frozen, in millimetres, over read-only arrays."""

@@ -1,0 +1,42 @@
+"""A body on slices: a scalar field per slice, body where field > level."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from stackloft.model.arrays import FloatArray
+from stackloft.model.notices import Notice
+from stackloft.model.slice_stack import Picture, SliceStack
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectionField:
+    """One slice's grey levels, oriented so that the body is above the level."""
+
+    values: FloatArray
+    """(rows, columns) of the crop."""
+    level: float
+    """Body where values > level; the boundary lies sub-pixel on values = level."""
+    offset: tuple[int, int] = (0, 0)
+    """(row, column) of the crop's first pixel in the slice."""
+    threshold: float = float("nan")
+    """The level on the picture's own grey scale, for people."""
+    local_levels: FloatArray | None = None
+    """(rows, columns) or None: the level pixel by pixel where it varies (uneven light)."""
+    notices: tuple[Notice, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """What a segmenter makes of a stack; each slice is worked out when asked for."""
+
+    stack: SliceStack
+    field_of: Callable[[int, Picture], SectionField]
+    """(slice number, decoded picture) to the slice's field; safe to call from several threads."""
+    binary: bool = False
+    """True for label maps: no grey levels, so contours are stair-stepped and say so."""
+    notices: tuple[Notice, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.stack)

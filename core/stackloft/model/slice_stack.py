@@ -1,0 +1,98 @@
+"""A stack of grey or colour slices, decoded on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.arrays import FloatArray
+from stackloft.model.ends import End
+from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
+
+Picture = NDArray[Any]
+"""One decoded slice: (rows, columns) grey or (rows, columns, 3) RGB, any real dtype."""
+
+
+class SectionKind(StrEnum):
+    """What one slice shows."""
+
+    FACE = "face"
+    """A photographed cut: the section at one plane."""
+    SILHOUETTE = "silhouette"
+    """The outline seen from above."""
+    SLAB = "slab"
+    """A scan's slice of finite thickness, which may be thinner than the pitch."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hints:
+    """What the folder's ``stack.toml`` (or the format) tells beyond the pictures; flags win over it."""
+
+    ends: tuple[End, End] | None = None
+    height: float | None = None
+    """The body's length along the axis, mm."""
+    background: str | None = None
+    """``light`` or ``dark``; None: found from the picture."""
+    specimen: str | None = None
+    measured_weight: float | None = None
+    """g"""
+    measured_volume: float | None = None
+    """mm³"""
+    slices: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)
+    """Per-slice overrides (``threshold``, ``mask``, ``skip``) by slice number, counted from 1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SliceStack:
+    """Slices in order along the axis, in millimetres.
+
+    In-plane coordinates: x = column·column spacing, y = row·row spacing, z = position: the picture is
+    seen along +z, so (x, y, z) is right-handed. Pixel (0, 0)'s centre is the in-plane origin.
+    """
+
+    decode: Callable[[int], Picture]
+    """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads."""
+    names: tuple[str, ...]
+    """(m) file name or slice label, for messages."""
+    shape: tuple[int, int]
+    """(rows, columns), the same for every slice."""
+    positions: FloatArray
+    """(m) mm, strictly increasing."""
+    pixel_spacing: FloatArray
+    """(m, 2) mm: row spacing, column spacing of each slice."""
+    kind: SectionKind
+    thickness: FloatArray | None = None
+    """(m) mm, a slab's own thickness; None for faces."""
+    affine: FloatArray = field(default_factory=lambda: np.eye(4))
+    """(4, 4) from stack millimetres (x, y, z, 1) to patient/bench millimetres; shear is gantry tilt."""
+    hints: Hints = field(default_factory=Hints)
+    notices: tuple[Notice, ...] = ()
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    """How the geometry was learned, for example ``{"pixel size": "--pixel-size"}``; no personal data."""
+
+    def __post_init__(self) -> None:
+        check_slice_stack(self)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+
+def check_slice_stack(stack: SliceStack) -> None:
+    """Raise InputError when the stack's arrays disagree or its geometry is impossible."""
+    m = len(stack.names)
+    if stack.positions.shape != (m,) or stack.pixel_spacing.shape != (m, 2):
+        raise InputError(
+            "positions or pixel spacing do not fit the slices",
+            found=f"{stack.positions.shape}, {stack.pixel_spacing.shape}",
+            expected=f"({m},), ({m}, 2)",
+        )
+    if not (np.isfinite(stack.positions).all() and (np.diff(stack.positions) > 0).all()):
+        raise InputError("slice positions must be finite and strictly increasing")
+    if not (np.isfinite(stack.pixel_spacing).all() and (stack.pixel_spacing > 0).all()):
+        raise InputError("pixel spacing must be positive", found=str(stack.pixel_spacing.min()))

@@ -1,0 +1,19 @@
+"""A triangle surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from stackloft.model.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TriMesh:
+    """Triangles, outward (counter-clockwise seen from outside)."""
+
+    vertices: FloatArray
+    """(n, 3) mm"""
+    faces: IntArray
+    """(t, 3) indices into `vertices`"""
+    biased: str | None = None
+    """Why its area is known to be biased (for example a binary label map); None when it is not."""

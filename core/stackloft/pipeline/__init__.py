@@ -1,0 +1,1 @@
+"""Orchestration: recipe, run, study."""

@@ -1,0 +1,1 @@
+"""Phantoms with exact answers and the conformance checks that plug-in authors run."""
