@@ -1,0 +1,192 @@
+"""Photographs of a body's cut faces, one file per slice.
+
+::
+
+    apple/                        z ->
+      stack.toml                   0    t   2t   3t
+      slice_1.jpg  face at 0       |    |    |    |
+      slice_2.jpg  face at t       |####|####|####|      t: slice thickness
+      slice_10.jpg face at 2t      |####|####|####|
+
+Files are put in natural order (``slice_2`` before ``slice_10``). A photograph shows the face that a
+cut laid bare; with a thickness t, face k lies at k·t.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from stackloft.contracts.options import option
+from stackloft.contracts.stack_file import NAME, StackFile, load_stack_file
+from stackloft.model.arrays import frozen_floats
+from stackloft.model.errors import InputError, UsageError
+from stackloft.model.notices import Notice
+from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture, read_header
+from stackloft_plugins.readers.picture_folder import check_sizes, list_pictures, split_source
+from stackloft_plugins.readers.picture_kinds import READABLE, SUFFIXES, natural_key, picture_kind
+from stackloft_plugins.readers.section_spacing import SpacingOptions, pixel_size_of, positions_of
+
+MIN_SLICES = 2
+"""Fewer sections bound no body."""
+
+_PROBED = 8  # files opened to tell whether a folder holds pictures
+_CONFIDENCE = 0.8
+
+
+@dataclass(frozen=True, slots=True)
+class PhotosReader:
+    """Reads a folder of photographs into a `SliceStack` of faces.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from PIL import Image
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     for number in (1, 2, 10):
+    ...         Image.new("L", (40, 30), 255).save(Path(folder) / f"slice_{number}.png")
+    ...     stack = PhotosReader(pixel_size="0.3mm", thickness=5).read(Path(folder))
+    ...     stack.names, stack.positions, stack.decode(0).shape
+    (('slice_1.png', 'slice_2.png', 'slice_10.png'), array([ 0.,  5., 10.]), (30, 40))
+    """
+
+    api: ClassVar[str] = "1"
+    accepts: ClassVar[tuple[type, ...]] = (Path,)
+    produces: ClassVar[tuple[type, ...]] = (SliceStack,)
+
+    pixel_size: float | str | None = option(None, "length of one pixel on the cut face", unit="mm", gt=0)
+    thickness: float | str | None = option(None, "thickness of one slice: faces lie at k·t", unit="mm", gt=0)
+    positions: tuple[float, ...] | str | None = option(
+        None, "position of every face along the axis, in the order of the file names", unit="mm"
+    )
+    first: str = option("", "file name of the first slice to use; the folder's first when empty")
+    last: str = option("", "file name of the last slice to use; the folder's last when empty")
+
+    def probe(self, path: Path) -> float:
+        """Return 0.8 for a folder (or pattern) with at least one picture, 0 otherwise."""
+        folder, pattern = split_source(path)
+        try:
+            files = sorted(item for item in folder.glob(pattern) if item.is_file()) if folder.is_dir() else []
+            found = any(picture_kind(item) in READABLE for item in _sample(files))
+        except (OSError, ValueError):
+            return 0.0
+        return _CONFIDENCE if found else 0.0
+
+    def read(self, path: Path) -> SliceStack:
+        """Return the stack; headers are read here, pixels when a slice is asked for.
+
+        Parameters
+        ----------
+        path : Path
+            A folder, or a folder and a pattern of file names (``apple/slice_*.jpg``).
+
+        Raises
+        ------
+        InputError
+            No or one picture, damaged or unreadable pictures, different sizes, unknown spacing.
+        """
+        folder, _ = split_source(path)
+        said = load_stack_file(folder)
+        _check_kind(said, folder)
+        every, matched = list_pictures(path, _masks(said))
+        numbers = self._chosen(every, matched)
+        flags = SpacingOptions(self.pixel_size, self.thickness, self.positions)
+        size, size_source = pixel_size_of(flags, said, path)
+        positions, position_source = positions_of(flags, said, numbers, len(every), path)
+        kept, notices = _without_skipped(numbers, said, every)
+        headers = tuple(read_header(every[number]) for number in kept)
+        _check_count(headers, path)
+        check_sizes(headers)
+        return SliceStack(
+            decode=_decoder(headers, 0 if said.background == "dark" else 255),
+            names=tuple(header.path.name for header in headers),
+            shape=headers[0].size,
+            positions=frozen_floats(
+                [z for z, number in zip(positions, numbers, strict=True) if number in kept]
+            ),
+            pixel_spacing=frozen_floats(np.full((len(headers), 2), size)),
+            kind=said.kind or SectionKind.FACE,
+            hints=said.hints(folder, {number + 1: slot for slot, number in enumerate(kept, start=1)}),
+            notices=notices,
+            provenance={"pixel size": size_source, "positions": position_source},
+        )
+
+    def _chosen(self, every: tuple[Path, ...], matched: tuple[int, ...]) -> tuple[int, ...]:
+        """Return the numbers, from 0, of the slices between `first` and `last`."""
+        names = [path.name for path in every]
+        for flag, name in (("first", self.first), ("last", self.last)):
+            if name and name not in names:
+                raise UsageError(
+                    "no such slice", where=f"reader.{flag}", found=name, expected=f"{names[0]} … {names[-1]}"
+                )
+        start = names.index(self.first) if self.first else 0
+        stop = names.index(self.last) if self.last else len(names) - 1
+        if stop < start:
+            raise UsageError(
+                "last comes before first", where="reader.last", found=f"{self.first}, {self.last}"
+            )
+        return tuple(number for number in matched if start <= number <= stop)
+
+
+def _sample(files: list[Path]) -> list[Path]:
+    """Return the few files worth opening: those that promise a picture first."""
+    return sorted(files, key=lambda path: (path.suffix.lower() not in SUFFIXES, natural_key(path.name)))[
+        :_PROBED
+    ]
+
+
+def _masks(said: StackFile) -> frozenset[str]:
+    return frozenset(override.mask for override in said.slice.values() if override.mask is not None)
+
+
+def _check_kind(said: StackFile, folder: Path) -> None:
+    if said.kind is SectionKind.SLAB:
+        raise InputError(
+            "photographs do not show slabs",
+            where=str(folder / NAME),
+            found='kind = "slab"',
+            expected='kind = "face" or "silhouette"',
+        )
+
+
+def _without_skipped(
+    numbers: tuple[int, ...], said: StackFile, every: tuple[Path, ...]
+) -> tuple[tuple[int, ...], tuple[Notice, ...]]:
+    """Return the slices that are used, and a notice that names the skipped ones."""
+    beyond = [number for number in said.slice if number > len(every)]
+    if beyond:
+        raise InputError(
+            f"there is no slice {beyond[0]}",
+            where=str(every[0].parent / NAME),
+            found=f"[slice.{beyond[0]}]",
+            expected=f"1 to {len(every)}, counted in natural order",
+        )
+    skipped = [number for number in numbers if number + 1 in said.slice and said.slice[number + 1].skip]
+    kept = tuple(number for number in numbers if number not in skipped)
+    if not skipped:
+        return kept, ()
+    names = ", ".join(every[number].name for number in skipped)
+    message = f"skipped as {NAME} says: {names}; the body is interpolated across the gap"
+    return kept, (Notice("slice-skipped", message),)
+
+
+def _check_count(headers: tuple[PictureHeader, ...], path: Path) -> None:
+    if len(headers) < MIN_SLICES:
+        raise InputError(
+            "one slice makes no body" if headers else "every slice is skipped",
+            where=str(path),
+            found=headers[0].path.name if headers else "none",
+            expected="at least 2 pictures, better 7 or more",
+        )
+
+
+def _decoder(headers: tuple[PictureHeader, ...], paper: int) -> Callable[[int], Picture]:
+    def decode(number: int) -> Picture:
+        return decode_picture(headers[number], paper)
+
+    return decode

@@ -1,0 +1,207 @@
+"""One picture file: its header, and its pixels when they are asked for (Pillow)."""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from stackloft.model.errors import InputError
+from stackloft_plugins.readers.picture_kinds import READABLE
+
+MAX_PIXELS = 500_000_000
+"""Larger pictures are taken for decompression bombs."""
+
+MIN_SIDE = 3
+"""A smaller picture has no inside."""
+
+_PILLOW_LIMIT = 80_000_000  # below the size at which Pillow itself warns
+
+
+_DAMAGE = (OSError, SyntaxError, ValueError, TypeError, IndexError, KeyError, EOFError, MemoryError)
+"""What Pillow raises on damaged files."""
+
+_Turn = Callable[[NDArray[Any]], NDArray[Any]]
+_UPRIGHT: dict[int, _Turn] = {
+    2: lambda a: a[:, ::-1],
+    3: lambda a: a[::-1, ::-1],
+    4: lambda a: a[::-1],
+    5: lambda a: a.swapaxes(0, 1),
+    6: lambda a: a.swapaxes(0, 1)[:, ::-1],
+    7: lambda a: a.swapaxes(0, 1)[::-1, ::-1],
+    8: lambda a: a.swapaxes(0, 1)[::-1],
+}
+"""What undoes each EXIF orientation (TIFF 6.0, tag 274)."""
+
+_lock = threading.Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class PictureHeader:
+    """What the header of a picture says."""
+
+    path: Path
+    size: tuple[int, int]
+    """(rows, columns) as seen upright"""
+    orientation: int = 1
+    """EXIF orientation, 1 to 8"""
+    delicate: bool = False
+    """True when opening it needs Pillow's warnings or its own size limit put aside."""
+
+
+def read_header(path: Path) -> PictureHeader:
+    """Return a picture's header; no pixel is decoded.
+
+    Raises
+    ------
+    InputError
+        Damaged, empty, animated or multi-page, or too large.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     Image.new("L", (40, 30)).save(Path(folder) / "a.png")
+    ...     read_header(Path(folder) / "a.png").size
+    (30, 40)
+    """
+    with _delicately() as caught, _opened(path) as image:
+        orientation = _orientation(image)
+        columns, rows = image.size
+        _check_pages(image, path)
+    if rows * columns > MAX_PIXELS:
+        raise InputError(
+            "picture is too large; it may be a decompression bomb",
+            where=str(path),
+            found=f"{columns} × {rows} pixels",
+            expected=f"at most {MAX_PIXELS // 1_000_000} Mpx",
+            fix="scale the pictures down, all by the same factor",
+        )
+    if min(rows, columns) < MIN_SIDE:
+        raise InputError("picture is too small", where=str(path), found=f"{columns} × {rows} pixels")
+    size = (columns, rows) if orientation >= 5 else (rows, columns)
+    return PictureHeader(path, size, orientation, bool(caught) or rows * columns > _PILLOW_LIMIT)
+
+
+def decode_picture(header: PictureHeader, paper: int = 255) -> NDArray[Any]:
+    """Return the upright pixels: (rows, columns) grey or (rows, columns, 3) RGB.
+
+    8-bit grey and colour come as uint8, 16-bit grey as uint16, 32-bit grey as int32 or float32.
+    Palettes become RGB, CMYK and other colour models are converted to RGB, and what is transparent is
+    laid on a paper of grey level `paper`. Safe to call from several threads.
+
+    Raises
+    ------
+    InputError
+        The picture is truncated or damaged, or has changed since its header was read.
+    """
+    with _delicately() if header.delicate else nullcontext(), _opened(header.path) as image:
+        try:
+            image.load()
+            pixels = _pixels(image, paper)
+        except _DAMAGE as error:
+            raise _damaged(header.path, error) from error
+    if header.orientation != 1:
+        pixels = np.ascontiguousarray(_UPRIGHT[header.orientation](pixels))
+    if pixels.shape[:2] != header.size:
+        raise InputError(
+            "picture changed while it was read",
+            where=str(header.path),
+            found=f"{pixels.shape[1]} × {pixels.shape[0]} pixels",
+            expected=f"{header.size[1]} × {header.size[0]}",
+        )
+    return pixels
+
+
+@contextmanager
+def _delicately() -> Iterator[list[warnings.WarningMessage]]:
+    """Put Pillow's size limit and its warnings about metadata aside, and gather the latter.
+
+    Both are global to the process, hence the lock; decoding enters here only for files that need it.
+    """
+    with _lock, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        limit, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+        try:
+            yield caught
+        finally:
+            Image.MAX_IMAGE_PIXELS = limit
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Image.Image]:
+    try:
+        image = Image.open(path, formats=(*READABLE, "MPO"))
+    except _DAMAGE as error:
+        raise _damaged(path, error) from error
+    with image:
+        yield image
+
+
+def _orientation(image: Image.Image) -> int:
+    try:
+        value = image.getexif().get(0x0112, 1)
+    except (*_DAMAGE, ZeroDivisionError):
+        return 1  # unreadable EXIF: the pixels themselves may be sound
+    return value if isinstance(value, int) and 1 <= value <= 8 else 1
+
+
+def _check_pages(image: Image.Image, path: Path) -> None:
+    if image.format == "MPO":
+        return  # a phone's JPEG with a preview or gain map behind the photograph
+    try:
+        pages = getattr(image, "n_frames", 1)
+    except _DAMAGE as error:
+        raise _damaged(path, error) from error
+    if pages > 1:
+        raise InputError(
+            "picture has several pages or frames",
+            where=str(path),
+            found=f"{pages} frames ({image.format})",
+            expected="one picture per file",
+            fix=f"split it: magick {path.name} slice_%03d.png",
+        )
+
+
+def _pixels(image: Image.Image, paper: int) -> NDArray[Any]:
+    if image.mode in {"F", "I"} or image.mode.startswith("I;16"):
+        deep = np.asarray(image)
+        return deep.astype(deep.dtype.newbyteorder("="))
+    if image.has_transparency_data:
+        return _composited(image, paper)
+    if image.mode in {"L", "RGB"}:
+        return np.asarray(image)
+    return np.asarray(image.convert("L" if image.mode == "1" else "RGB"))
+
+
+def _composited(image: Image.Image, paper: int) -> NDArray[Any]:
+    """Lay what is transparent on paper; opaque pictures lose nothing."""
+    layered = image.convert("LA" if image.mode in {"LA", "La"} else "RGBA")
+    values = np.asarray(layered)
+    colour, alpha = values[..., :-1], values[..., -1:]
+    if (alpha == 255).all():
+        return np.ascontiguousarray(colour[..., 0] if colour.shape[-1] == 1 else colour)
+    weight = alpha.astype(np.float32) / 255
+    laid = np.rint(colour * weight + paper * (1 - weight)).astype(np.uint8)
+    return np.ascontiguousarray(laid[..., 0] if laid.shape[-1] == 1 else laid)
+
+
+def _damaged(path: Path, error: BaseException) -> InputError:
+    reason = str(error).replace(str(path), path.name) or type(error).__name__
+    if isinstance(error, UnidentifiedImageError):
+        reason = "its header cannot be read"
+    return InputError(
+        "picture is damaged or truncated",
+        where=str(path),
+        found=reason,
+        expected="a whole JPEG, PNG, TIFF, BMP or WebP picture",
+        fix="copy it again from the camera, or set skip = true for it in stack.toml",
+    )
