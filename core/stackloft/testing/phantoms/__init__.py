@@ -1,0 +1,13 @@
+"""Bodies whose volume and area are known to 1e-9, as exact contours or as photographs.
+
+>>> from stackloft.testing import phantoms
+>>> potato = phantoms.make("potato", seed=7, rotation=3, offset=(12.5, -4.0, 130.0))
+>>> stack = potato.contour_stack(sections=11, placing="mid")
+>>> len(stack), all(len(section.loops) == 1 for section in stack.sections)
+(11, True)
+"""
+
+from stackloft.testing.phantoms.catalogue import NAMES, make
+from stackloft.testing.phantoms.phantom import Phantom
+
+__all__ = ["NAMES", "Phantom", "make"]

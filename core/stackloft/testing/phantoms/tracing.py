@@ -1,0 +1,140 @@
+"""From the inequalities on a plane to closed loops whose points lie on the boundary to rounding.
+
+A grid of signs finds the loops; Newton's method puts their points on the boundary; where the active
+inequality changes there is a corner, solved as the common zero of the two; between corners the points
+are spread by equal arc length and put on the boundary again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
+from stackloft.model.contour_stack import Loop
+from stackloft.testing.phantoms.nesting import oriented
+from stackloft.testing.phantoms.plane_cut import PlaneCut
+
+_GRID = 121
+_TINY = 1e-9
+_SPREADS = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Arc:
+    """Part of a loop on one field, from corner to corner; a loop without corners is one closed arc."""
+
+    piece: int
+    points: FloatArray
+    """(2, k) mm, both ends included; the ends are equal when the arc is a whole loop."""
+
+    @property
+    def length(self) -> float:
+        return float(np.hypot(*np.diff(self.points)).sum())
+
+
+def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tuple[Loop, ...]:
+    """Return the loops of the section inside `box` with about `points` points on each.
+
+    Parameters
+    ----------
+    cut : PlaneCut
+        The inequalities on the plane.
+    box : pair of array (2)
+        Lower and upper corner of a rectangle that holds the section with a margin, mm.
+    points : int
+        Points on each loop; corners are among them.
+    """
+    found = []
+    for ring in _rings(cut, box):
+        arcs = _arcs(cut, cut.project(ring))
+        if arcs:
+            found.append(_loop(cut, arcs, points))
+    return oriented(found)
+
+
+def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray]) -> list[FloatArray]:
+    """Return closed polylines (2, k), last point not repeated, near the boundary."""
+    from skimage.measure import find_contours  # noqa: PLC0415 - heavy, and only phantoms in oblique poses need it
+
+    low, high = box
+    x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
+    X, Y = np.meshgrid(x, y, indexing="ij")
+    field = cut.worst(np.stack([X.ravel(), Y.ravel()]))[0].reshape(X.shape)
+    cell = (high - low) / (_GRID - 1)
+    rings = [(low + cell * ring[:-1]).T for ring in find_contours(field, 0.0)]  # type: ignore[no-untyped-call]
+    return [ring for ring in rings if ring.shape[1] >= 3]
+
+
+def _arcs(cut: PlaneCut, ring: FloatArray) -> list[_Arc]:
+    """Return the ring's arcs in order, each on one field, corners solved."""
+    pieces = cut.worst(ring)[1]
+    changes = np.flatnonzero(pieces != np.roll(pieces, 1))
+    if not len(changes):
+        return [_Arc(int(pieces[0]), np.append(ring, ring[:, :1], axis=1))]
+    ring, pieces = np.roll(ring, -changes[0], axis=1), np.roll(pieces, -changes[0])
+    starts = np.append(changes - changes[0], len(pieces))
+    runs = [(int(pieces[a]), ring[:, a:b]) for a, b in pairwise(starts)]
+    corners, between = [], []
+    for (piece, run), (following, nxt) in zip(runs, runs[1:] + runs[:1], strict=True):
+        solved = _corners(cut, piece, following, (run[:, -1] + nxt[:, 0]) / 2)
+        corners.append(solved[0][1])
+        between.append(solved)
+    arcs = []
+    for i, (piece, run) in enumerate(runs):
+        arcs.append(_Arc(piece, np.column_stack([between[i - 1][-1][1], run, between[i][0][1]])))
+        ends = between[i]
+        arcs += [_Arc(a[0], np.column_stack([a[1], b[1]])) for a, b in pairwise(ends)]
+    return _without_slivers(cut, arcs)
+
+
+def _corners(
+    cut: PlaneCut, first: int, second: int, near: FloatArray, depth: int = 0
+) -> list[tuple[int, FloatArray]]:
+    """Return [(field after the corner, corner)] from `first` to `second`, passing fields hidden between."""
+    corner = cut.meet(first, second, near)
+    value, piece = cut.worst(corner[:, None])
+    hidden = int(piece[0])
+    slope = np.hypot(*cut.values_and_gradients(hidden, corner[:, None])[1][:, 0])
+    if depth > 3 or hidden in {first, second} or value[0] <= _TINY * cut.size * slope:
+        return [(second, corner)]
+    return _corners(cut, first, hidden, corner, depth + 1) + _corners(cut, hidden, second, corner, depth + 1)
+
+
+def _without_slivers(cut: PlaneCut, arcs: Sequence[_Arc]) -> list[_Arc]:
+    """Return the arcs less those of no length, and neighbours on one field joined."""
+    kept: list[_Arc] = []
+    for arc in arcs:
+        if arc.length <= _TINY * cut.size:
+            continue
+        if kept and kept[-1].piece == arc.piece:
+            kept[-1] = _Arc(arc.piece, np.column_stack([kept[-1].points, arc.points[:, 1:]]))
+        else:
+            kept.append(arc)
+    if len(kept) > 1 and kept[0].piece == kept[-1].piece:
+        last = kept.pop()
+        kept[0] = _Arc(last.piece, np.column_stack([last.points, kept[0].points[:, 1:]]))
+    return kept
+
+
+def _loop(cut: PlaneCut, arcs: Sequence[_Arc], points: int) -> Loop:
+    """Return the loop with points spread along its arcs; arc joints are corners."""
+    total = sum(arc.length for arc in arcs)
+    spread = [_spread(cut, arc, max(2, round(points * arc.length / total))) for arc in arcs]
+    starts = np.cumsum([0] + [part.shape[1] for part in spread[:-1]])
+    corners = frozen_ints(starts if len(arcs) > 1 else [])
+    return Loop(frozen_floats(np.column_stack(spread).T), corners)
+
+
+def _spread(cut: PlaneCut, arc: _Arc, count: int) -> FloatArray:
+    """Return `count` points of the arc by equal arc length, its last end left out, (2, count)."""
+    line = arc.points
+    for _ in range(_SPREADS):
+        s = np.append(0.0, np.cumsum(np.hypot(*np.diff(line))))
+        targets = np.linspace(0, s[-1], count + 1)
+        line = np.stack([np.interp(targets, s, axis) for axis in line])
+        line[:, 1:-1] = cut.project(line[:, 1:-1], arc.piece)
+    return line[:, :-1]
