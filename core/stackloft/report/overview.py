@@ -1,0 +1,147 @@
+"""The overview: every section's contour over its photograph, in one picture.
+
+::
+
+    +--------+ +--------+ +--------+
+    |  (  )  | | (    ) | |  (  )  |     contour as measured, thin and coloured
+    +--------+ +--------+ +--------+
+     cut_01     cut_02     cut_03        file
+     z 0 mm     z 5.6 mm   z 11.1 mm     position
+
+Whoever looks at it sees within seconds whether a threshold took the plate for the body.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import BinaryIO
+
+import cv2
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from stackloft.model.arrays import FloatArray
+from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.report.thumbnails import Rgb, Thumbnail, side_for
+
+COLOURS = {
+    "magenta": (255, 0, 220),
+    "cyan": (0, 225, 255),
+    "yellow": (255, 230, 0),
+    "green": (0, 220, 60),
+    "blue": (20, 60, 255),
+}
+"""The contour's colour is the one of these that stands out best from what lies under the contours."""
+
+_GAP = 12
+_PAPER = (250, 250, 250)
+_INK = (40, 40, 40)
+_FRACTION_BITS = 4  # cv2 draws at a sixteenth of a pixel
+_ASPECT = 1.5
+
+
+def write_overview(contours: ContourStack, thumbnails: Sequence[Thumbnail], stream: BinaryIO) -> None:
+    """Write the overview of `contours` as PNG.
+
+    Parameters
+    ----------
+    contours : ContourStack
+        The loops that were measured.
+    thumbnails : sequence of Thumbnail
+        The slices they were traced on; empty for a source of contours alone, which are then drawn on
+        white, all at one scale, x to the right and y downwards as in a photograph.
+    stream : BinaryIO
+        Open for writing.
+    """
+    cells = _over_photographs(contours, thumbnails) if thumbnails else _on_paper(contours)
+    _grid(cells).save(stream, format="PNG", compress_level=4)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cell:
+    picture: Rgb
+    lines: tuple[str, str]
+
+
+def _over_photographs(contours: ContourStack, thumbnails: Sequence[Thumbnail]) -> list[_Cell]:
+    sections = {(section.name, round(section.z, 9)): section for section in contours.sections}
+    pairs = [(small, sections.get((small.name, round(small.z, 9)))) for small in thumbnails]
+    colour = _standing_out([(small, section) for small, section in pairs if section is not None])
+    return [_cell(small, section, colour) for small, section in pairs]
+
+
+def _on_paper(contours: ContourStack) -> list[_Cell]:
+    points = np.concatenate([loop.points for section in contours.sections for loop in section.loops])
+    low, high = points.min(axis=0), points.max(axis=0)
+    side = side_for(len(contours))
+    per_mm = 0.9 * side / float((high - low).max())
+    width, height = (math.ceil(extent * per_mm + 0.1 * side) for extent in high - low)
+    origin = tuple(0.05 * side - low * per_mm)
+    paper = np.full((height, width, 3), 255, dtype=np.uint8)
+    return [
+        _cell(Thumbnail(section.name, section.z, paper, (per_mm, per_mm), origin), section, COLOURS["blue"])
+        for section in contours.sections
+    ]
+
+
+def _cell(small: Thumbnail, section: Section | None, colour: tuple[int, int, int]) -> _Cell:
+    picture = small.picture.copy()
+    for loop in section.loops if section is not None else ():
+        at = np.round(_pixels(loop, small) * (1 << _FRACTION_BITS)).astype(np.int32)
+        cv2.polylines(picture, [at.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA, _FRACTION_BITS)
+    unused = "" if section is not None else "  (not used)"
+    return _Cell(picture, (small.name, f"z {small.z:g} mm{unused}"))
+
+
+def _pixels(loop: Loop, small: Thumbnail) -> FloatArray:
+    """Return the loop's vertices as (column, row) of the thumbnail."""
+    pixels: FloatArray = loop.points * np.array(small.per_mm) + np.array(small.origin)
+    return pixels
+
+
+def _standing_out(pairs: Sequence[tuple[Thumbnail, Section]]) -> tuple[int, int, int]:
+    """Return the colour whose distance from the pictures along the contours is greatest on the whole."""
+    under = [_under(loop, small) for small, section in pairs for loop in section.loops]
+    if not under:
+        return COLOURS["magenta"]
+    pixels = np.concatenate(under).astype(np.float64)
+    return max(COLOURS.values(), key=lambda colour: float(np.linalg.norm(pixels - colour, axis=1).mean()))
+
+
+def _under(loop: Loop, small: Thumbnail) -> Rgb:
+    rows, columns = small.picture.shape[:2]
+    at = np.round(_pixels(loop, small)).astype(int)
+    under: Rgb = small.picture[at[:, 1].clip(0, rows - 1), at[:, 0].clip(0, columns - 1)]
+    return under
+
+
+def _grid(cells: Sequence[_Cell]) -> Image.Image:
+    """Return the cells side by side on a sheet about half as wide again as high, each with its label."""
+    width = max(cell.picture.shape[1] for cell in cells)
+    height = max(cell.picture.shape[0] for cell in cells)
+    font = ImageFont.load_default(size=max(11, width // 24))
+    line = math.ceil(font.getbbox("Åg")[3]) + 2
+    pitch = width + _GAP, height + 2 * line + _GAP
+    columns = max(1, min(len(cells), round(math.sqrt(_ASPECT * len(cells) * pitch[1] / pitch[0]))))
+    rows = math.ceil(len(cells) / columns)
+    sheet = Image.new("RGB", (columns * pitch[0] + _GAP, rows * pitch[1] + _GAP), _PAPER)
+    draw = ImageDraw.Draw(sheet)
+    for number, cell in enumerate(cells):
+        left, top = _GAP + number % columns * pitch[0], _GAP + number // columns * pitch[1]
+        sheet.paste(Image.fromarray(cell.picture), (left, top))
+        for row, text in enumerate(cell.lines):
+            at = left, top + height + row * line
+            draw.text(at, _shortened(text, font, width), fill=_INK, font=font)
+    return sheet
+
+
+def _shortened(text: str, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, width: int) -> str:
+    """Return `text`, its middle left out when it would run into the next cell."""
+    keep = len(text)
+    short = text
+    while font.getbbox(short)[2] > width and keep > 4:
+        keep -= 1
+        short = f"{text[: keep // 2]}…{text[len(text) - keep // 2 :]}"
+    return short
