@@ -76,7 +76,8 @@ class Measurement:
 
     id: int
     volume: Figure
-    area: Figure
+    area: Figure | None
+    """None when the primary method gives a volume alone (cavalieri)."""
     label: str | None = None
     methods: Mapping[str, MethodRow] = field(default_factory=dict)
     derived: Mapping[str, float | None] = field(default_factory=dict)

@@ -34,12 +34,12 @@ def choose_reader(path: Path, name: str | None = None) -> Loaded:
     PluginError
         Two readers are equally sure, or the one named is unknown or broken.
     """
-    _must_exist(path)
     if name is not None:
-        return find("reader", name)
+        return _named(path, name)
     probes = probe_all(path)
     top = max((probe.confidence for probe in probes), default=0.0)
     if top <= 0:
+        _must_exist(path)
         raise _nobody(path, probes)
     surest = [probe.reader for probe in probes if probe.confidence == top]
     if len(surest) > 1:
@@ -50,6 +50,14 @@ def choose_reader(path: Path, name: str | None = None) -> Loaded:
             fix=f"choose one: {' or '.join(f'--reader {choice}' for choice in names)}",
         )
     return surest[0]
+
+
+def _named(path: Path, name: str) -> Loaded:
+    """Return the reader called `name`; a path that is not there may be a pattern that it knows."""
+    reader = find("reader", name)
+    if _probe(reader, path).confidence <= 0:
+        _must_exist(path)
+    return reader
 
 
 def probe_all(path: Path) -> tuple[Probe, ...]:

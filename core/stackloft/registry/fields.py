@@ -58,8 +58,8 @@ def fields_of(plugin: Any) -> tuple[OptionField, ...]:
 
 
 def _field(item: dataclasses.Field[Any], hint: Any) -> OptionField:
-    annotation, optional = _without_none(hint)
     said = item.metadata.get("stackloft", {})
+    annotation, optional = _core_type(hint, length=said.get("unit") == "mm")
     known = {key: said[key] for key in ("help", "unit", "bounds", "choices", "source") if key in said}
     return OptionField(item.name, annotation, optional, default_of(item), **known)
 
@@ -69,9 +69,12 @@ def default_of(item: dataclasses.Field[Any]) -> Any:
     return item.default if item.default_factory is dataclasses.MISSING else item.default_factory()
 
 
-def _without_none(hint: Any) -> tuple[Any, bool]:
+def _core_type(hint: Any, *, length: bool) -> tuple[Any, bool]:
+    """Return `hint` without None, and whether None was allowed; text for a length is parsed anyway."""
     if get_origin(hint) not in {Union, types.UnionType}:
         return hint, False
     rest = tuple(part for part in get_args(hint) if part is not types.NoneType)
     optional = len(rest) < len(get_args(hint))
+    if length and len(rest) > 1:
+        rest = tuple(part for part in rest if part is not str)
     return (rest[0] if len(rest) == 1 else Union[rest]), optional  # noqa: UP007 - built at run time

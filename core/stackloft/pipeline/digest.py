@@ -1,0 +1,120 @@
+"""A source's fingerprint: the same files give the same figures, and the report says which files."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stackloft.model.errors import InputError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture
+
+_BLOCK = 1 << 20
+RUN_MARK = "measurement.json"
+"""A folder below the source with this file in it holds a run's output and is no part of the source."""
+
+
+def digest_of(source: Path) -> str:
+    """Return the SHA-256 over the names (relative, sorted) and contents of the source's files.
+
+    Parameters
+    ----------
+    source : Path
+        A file, a folder (with what is below it; hidden files and earlier runs' output folders left
+        out), or a folder with a pattern of file names.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "a.txt").write_text("one")
+    ...     digest_of(Path(folder)) == digest_of(Path(folder) / "*.txt")
+    True
+    """
+    whole = hashlib.sha256()
+    root = source if source.is_dir() else source.parent
+    for path in sorted(_files(source), key=lambda item: item.relative_to(root).as_posix()):
+        try:
+            with path.open("rb") as stream:
+                content = hashlib.file_digest(stream, "sha256").digest()
+        except OSError as error:
+            raise InputError("cannot be read", where=str(path), found=error.strerror) from error
+        whole.update(path.relative_to(root).as_posix().encode() + b"\0" + content)
+    return whole.hexdigest()
+
+
+def _files(source: Path) -> Iterator[Path]:
+    if source.is_file():
+        yield source
+    elif not source.is_dir():
+        yield from (item for item in source.parent.glob(source.name) if item.is_file())
+    else:
+        for folder, folders, names in os.walk(source):
+            here = Path(folder)
+            folders[:] = [x for x in folders if not x.startswith(".") and not (here / x / RUN_MARK).exists()]
+            yield from (here / x for x in names if not x.startswith(".") and (here / x).is_file())
+
+
+def digest_of_value(value: Any) -> str:
+    """Return the SHA-256 over what a product in memory holds: arrays, numbers and text, not functions.
+
+    Examples
+    --------
+    >>> from stackloft.model.contour_stack import ContourStack
+    >>> len(digest_of_value(ContourStack(())))
+    64
+    """
+    whole = hashlib.sha256()
+    for part in _parts(value):
+        whole.update(part + b"\0")
+    return whole.hexdigest()
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    if isinstance(value, np.ndarray):
+        yield f"{value.dtype.str}{value.shape}".encode() + value.tobytes()
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for item in dataclasses.fields(value):
+            yield item.name.encode()
+            yield from _parts(getattr(value, item.name))
+    elif isinstance(value, (tuple, list)):
+        yield str(len(value)).encode()
+        for part in value:
+            yield from _parts(part)
+    elif isinstance(value, Mapping):
+        yield from _parts(sorted((str(key), item) for key, item in value.items()))
+    elif not callable(value):
+        yield repr(value).encode()
+
+
+class PictureDigest:
+    """A `Sink` that takes the fingerprint of slices that came from memory, in the one decoding pass."""
+
+    def __init__(self) -> None:
+        self._hash = hashlib.sha256()
+
+    def begin(self, segmentation: Segmentation) -> None:
+        """Take in the stack's geometry."""
+        stack = segmentation.stack
+        for array in (stack.positions, stack.pixel_spacing, stack.affine):
+            self._hash.update(array.tobytes())
+
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
+        """Take in one picture."""
+        self._hash.update(f"{index}{picture.dtype.str}{picture.shape}".encode())
+        self._hash.update(picture.tobytes())
+
+    def end(self) -> str:
+        """Return the fingerprint."""
+        return self._hash.hexdigest()

@@ -1,0 +1,190 @@
+r"""A run: read, section, reconstruct, integrate, hand over.
+
+::
+
+    source --reader--> product --(segmenter, one decoding pass)--> contours
+                          \--> steps of each method --> integral --> Measurement
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from stackloft.contracts.sink import Sink
+from stackloft.model.contour_stack import ContourStack
+from stackloft.model.errors import StackloftError
+from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.measurement import Measurement, MethodRow, Result, SectionRow
+from stackloft.model.notices import Notice
+from stackloft.model.segmentation import Segmentation
+from stackloft.model.slice_stack import Hints, SliceStack
+from stackloft.pipeline.digest import PictureDigest, digest_of, digest_of_value
+from stackloft.pipeline.figures import derived_figures, method_row, require_volume
+from stackloft.pipeline.outcome import Outcome
+from stackloft.pipeline.plan import Method, Plan, make_plan
+from stackloft.pipeline.progress import Progress, Silence
+from stackloft.pipeline.provenance import provenance_of
+from stackloft.pipeline.recipe_file import recipe_of
+from stackloft.pipeline.request import MeasureRequest
+from stackloft.pipeline.section_rows import section_rows
+from stackloft.pipeline.workbench import Workbench, guarded
+
+
+def measure(
+    request: MeasureRequest,
+    *,
+    progress: Progress | None = None,
+    sinks: Sequence[Sink] = (),
+    product: Any = None,
+) -> Outcome:
+    """Measure what `request` names.
+
+    Parameters
+    ----------
+    request : MeasureRequest
+        Source, reader, method and options.
+    progress : Progress, optional
+        Told about each stage.
+    sinks : sequence of Sink
+        Fed with every slice in the one decoding pass; not called when the source has no slices.
+    product : object, optional
+        A product already read; ``request.source`` is then only its name.
+
+    Raises
+    ------
+    StackloftError
+        The source cannot be measured by the primary method, or the request makes no sense.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> measure(MeasureRequest(Path("no-such-folder")))
+    Traceback (most recent call last):
+    stackloft.model.errors.InputError: no-such-folder: no such file or folder
+    """
+    start = time.perf_counter()
+    listener = progress or Silence()
+    plan = make_plan(request, product)
+    reading = _read(plan, request, product, listener)
+    own = (PictureDigest(),) if isinstance(product, (SliceStack, Segmentation)) else ()
+    bench = Workbench(plan, reading.product, listener, (*own, *sinks))
+    rows, measured = _run_methods(plan.methods, bench)
+    sections, skipped = _sections(bench)
+    objects = (_measurement(rows, measured, sections, reading.product),)
+    products = _in_order(measured, bench)
+    seconds = {**reading.seconds, **bench.stages, "total": time.perf_counter() - start}
+    digest = bench.sink_products[0] if own and bench.sink_products else reading.digest
+    result = Result(
+        source={"path": str(request.source), "reader": reading.name, "digest": digest},
+        objects=objects,
+        warnings=_warnings(plan, products, skipped),
+        recipe=recipe_of(plan, segmented=any(isinstance(item, Segmentation) for item in products)),
+        provenance=provenance_of(plan, seconds),
+    )
+    return Outcome(result, products, bench.sink_products[len(own) :])
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    product: Any
+    name: str
+    digest: str
+    seconds: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Measured:
+    """The primary method's products by identity, for the order of products and the ends."""
+
+    identities: tuple[str, ...]
+    solid: LoftedSolid | None
+
+
+def _read(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> _Reading:
+    if plan.reader is None:
+        return _Reading(product, "python", digest_of_value(product), {})
+    progress.begin("read", None)
+    start = time.perf_counter()
+    try:
+        found = guarded(plan.reader.loaded, plan.reader.instance.read, request.source)
+        middle = time.perf_counter()
+        digest = digest_of(request.source)
+    finally:
+        progress.end()
+    seconds = {"read": middle - start, "digest": time.perf_counter() - middle}
+    return _Reading(found, plan.reader.loaded.name, digest, seconds)
+
+
+def _run_methods(methods: Sequence[Method], bench: Workbench) -> tuple[dict[str, MethodRow], _Measured]:
+    """Return every method's row, the primary one first; only the primary method's failure is raised."""
+    rows: dict[str, MethodRow] = {}
+    measured = _Measured((), None)
+    for number, method in enumerate(methods):
+        try:
+            rows[method.name], work = _run_method(method, bench)
+        except StackloftError as error:
+            if number == 0:
+                raise
+            rows[method.name] = MethodRow(None, None, 0.0, str(error))
+            continue
+        if number == 0:
+            solids = [bench.made[name] for name in work if isinstance(bench.made[name], LoftedSolid)]
+            measured = _Measured(tuple(work), solids[0] if solids else None)
+    return rows, measured
+
+
+def _run_method(method: Method, bench: Workbench) -> tuple[MethodRow, list[str]]:
+    """Run one method; its seconds are those of its own steps, shared ones included."""
+    if method.error is not None:
+        raise method.error
+    integral, work = bench.run(method.steps)
+    seconds = sum(bench.seconds[name] for name in work)
+    return method_row(method.name, integral, seconds), work
+
+
+def _sections(bench: Workbench) -> tuple[tuple[SectionRow, ...], tuple[Notice, ...]]:
+    """Return the section table; a method that needs no contours is not stopped by contours that fail."""
+    try:
+        contours = bench.contours()
+    except StackloftError as error:
+        return (), (Notice("no-sections", f"the section table is empty: {error}"),)
+    return (section_rows(contours) if contours is not None else ()), ()
+
+
+def _measurement(
+    rows: dict[str, MethodRow], measured: _Measured, sections: tuple[SectionRow, ...], source: Any
+) -> Measurement:
+    names = tuple(rows)
+    volume = require_volume(tuple(rows.values()), names)
+    area = rows[names[0]].area
+    hints = _hints(source)
+    return Measurement(
+        id=1,
+        volume=volume,
+        area=area,
+        methods=rows,
+        derived=derived_figures(volume.value, area.value if area else None, hints.measured_weight),
+        ends=measured.solid.ends if measured.solid is not None else (),
+        sections=sections,
+    )
+
+
+def _hints(source: Any) -> Hints:
+    holder = source.stack if isinstance(source, Segmentation) else source
+    return holder.hints if isinstance(holder, (SliceStack, ContourStack)) else Hints()
+
+
+def _in_order(measured: _Measured, bench: Workbench) -> tuple[Any, ...]:
+    """Return what was read, what the primary method made, then everything else."""
+    first = ["source", *measured.identities]
+    rest = [name for name in bench.made if name not in first]
+    return tuple(bench.made[name] for name in [*first, *rest])
+
+
+def _warnings(plan: Plan, products: Sequence[Any], more: tuple[Notice, ...]) -> tuple[Notice, ...]:
+    """Return every notice once, in the order in which they arose."""
+    own = [notice for product in products for notice in getattr(product, "notices", ())]
+    return tuple(dict.fromkeys([*plan.notices, *own, *more]))
