@@ -13,20 +13,27 @@ from numpy.typing import ArrayLike
 from stackloft.model.arrays import frozen_floats
 from stackloft.model.errors import UsageError
 from stackloft.testing.phantoms import ellipsoids, polyhedra, round_solids
+from stackloft.testing.phantoms.apple import apple
+from stackloft.testing.phantoms.banana import banana
 from stackloft.testing.phantoms.body import Body
+from stackloft.testing.phantoms.meat import meat
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.pose import rotation_matrix
 from stackloft.testing.phantoms.potato import potato
 from stackloft.testing.phantoms.twisted_bar import twisted_bar
-from stackloft.testing.phantoms.two_lobed import two_lobed
+from stackloft.testing.phantoms.two_lobed import dumbbell, two_lobed
 
 BODIES: dict[str, Callable[..., Body]] = {
+    "apple": apple,
+    "banana": banana,
     "box": polyhedra.box,
     "cone": round_solids.cone,
     "cylinder": round_solids.cylinder,
     "double-cone": ellipsoids.double_cone,
+    "dumbbell": dumbbell,
     "ellipsoid": ellipsoids.ellipsoid,
     "frustum": round_solids.frustum,
+    "meat": meat,
     "potato": potato,
     "prism": polyhedra.prism,
     "superellipsoid": ellipsoids.superellipsoid,

@@ -12,6 +12,8 @@ from stackloft.testing.phantoms.dual import STEP
 
 _ROUNDS = 60
 _CONVERGED = 2e-15
+_LEVEL = 1e-30
+"""Keeps a field that is constant on the plane from dividing by its slope."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +46,18 @@ class PlaneCut:
         values = np.stack([self.values(piece, p) for piece in range(len(self.fields))])
         pieces = values.argmax(axis=0)
         return values[pieces, np.arange(values.shape[1])], pieces
+
+    def nearest(self, p: FloatArray) -> IntArray:
+        """Return which field bounds the section near plane points (2, n) that lie close to its boundary.
+
+        Fields come in different units; value over slope is a distance in each.
+        """
+        distances = []
+        for piece in range(len(self.fields)):
+            value, gradient = self.values_and_gradients(piece, p)
+            distances.append(value / (np.hypot(*gradient) + _LEVEL))
+        found: IntArray = np.stack(distances).argmax(axis=0)
+        return found
 
     def project(self, p: FloatArray, piece: int | None = None) -> FloatArray:
         """Return the points moved along gradients onto the boundary (or onto one field's zero), (2, n)."""

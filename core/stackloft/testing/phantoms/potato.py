@@ -47,10 +47,10 @@ def potato(
     coefficients = _coefficients(bumps, degree, seed)
 
     def distance(d: Array) -> Array:
-        relief: Array = radius * (
-            1 + sum(c @ y for c, y in zip(coefficients, harmonics(d, degree), strict=True))
-        )
-        return relief
+        relief: Array = np.ones_like(d[0])
+        for c, y in zip(coefficients, harmonics(d, degree), strict=True):
+            relief = relief + c @ y
+        return radius * relief
 
     return star_body(
         distance,

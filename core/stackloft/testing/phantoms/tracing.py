@@ -50,7 +50,7 @@ def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tup
     """
     found = []
     for ring in _rings(cut, box):
-        arcs = _arcs(cut, cut.project(ring))
+        arcs = _arcs(cut, ring)
         if arcs:
             found.append(_loop(cut, arcs, points))
     return oriented(found)
@@ -71,24 +71,29 @@ def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray]) -> list[FloatArray
 
 def _arcs(cut: PlaneCut, ring: FloatArray) -> list[_Arc]:
     """Return the ring's arcs in order, each on one field, corners solved."""
-    pieces = cut.worst(ring)[1]
+    pieces = cut.nearest(ring)
     changes = np.flatnonzero(pieces != np.roll(pieces, 1))
     if not len(changes):
+        ring = cut.project(ring, int(pieces[0]))
         return [_Arc(int(pieces[0]), np.append(ring, ring[:, :1], axis=1))]
     ring, pieces = np.roll(ring, -changes[0], axis=1), np.roll(pieces, -changes[0])
     starts = np.append(changes - changes[0], len(pieces))
-    runs = [(int(pieces[a]), ring[:, a:b]) for a, b in pairwise(starts)]
-    corners, between = [], []
-    for (piece, run), (following, nxt) in zip(runs, runs[1:] + runs[:1], strict=True):
-        solved = _corners(cut, piece, following, (run[:, -1] + nxt[:, 0]) / 2)
-        corners.append(solved[0][1])
-        between.append(solved)
+    runs = [(int(pieces[a]), _settled(cut, ring[:, a:b], int(pieces[a]))) for a, b in pairwise(starts)]
+    between = []
+    for (piece, _), (following, _), last in zip(runs, runs[1:] + runs[:1], starts[1:], strict=True):
+        between.append(_corners(cut, piece, following, (ring[:, last - 1] + ring[:, last % len(pieces)]) / 2))
     arcs = []
     for i, (piece, run) in enumerate(runs):
         arcs.append(_Arc(piece, np.column_stack([between[i - 1][-1][1], run, between[i][0][1]])))
         ends = between[i]
         arcs += [_Arc(a[0], np.column_stack([a[1], b[1]])) for a, b in pairwise(ends)]
     return _without_slivers(cut, arcs)
+
+
+def _settled(cut: PlaneCut, run: FloatArray, piece: int) -> FloatArray:
+    """Return the run's points moved onto its field, less those that fall beyond another one."""
+    moved = cut.project(run, piece)
+    return moved[:, cut.worst(moved)[1] == piece]
 
 
 def _corners(

@@ -9,6 +9,7 @@ import numpy as np
 from stackloft.testing.phantoms.body import Body, Patch
 from stackloft.testing.phantoms.checks import positive, within
 from stackloft.testing.phantoms.dual import Array
+from stackloft.testing.phantoms.pose import euler
 from stackloft.testing.phantoms.quadrature import figures
 from stackloft.testing.phantoms.star_body import direction
 
@@ -55,6 +56,63 @@ def two_lobed(
         volume=np.pi * a * b * c * (4 / 3 - pinch * _gauss_moment(neck)),
         area=figures(patches)[1],
         parameters={"a": a, "b": b, "c": c, "pinch": pinch, "neck": neck},
+    )
+
+
+def dumbbell(
+    length: float = 100.0, thickness: float = 44.0, pinch: float = 0.4, neck: float = 0.3, tilt: float = 50.0
+) -> Body:
+    """Return a round two-lobed body whose axis leans by `tilt` degrees from z towards x.
+
+    About its own axis its radius is (thickness/2)·w(s)·√(1 − s²), s from −1 to 1 along it, with
+    w = 1 − pinch·exp(−(s/neck)²). Cut obliquely, sections near the ends are convex and those in the
+    middle take in both lobes and the waist. V = π·(thickness/2)²·(length/2)·∫ w²·(1 − s²) ds.
+
+    Parameters
+    ----------
+    length, thickness : float
+        mm
+    pinch : float
+        0 to 0.7.
+    neck : float
+        0.1 to 1; half-length of the waist over half the length.
+    tilt : float
+        Degrees, −60 to 60; leaning further, the lobes' sections come apart.
+
+    Examples
+    --------
+    >>> round(dumbbell(2, 2, pinch=0).volume / np.pi, 12) == round(4 / 3, 12)
+    True
+    """
+    positive(length=length, thickness=thickness)
+    within(0, 0.7, pinch=pinch)
+    within(0.1, 1, neck=neck)
+    within(-60, 60, tilt=tilt)
+    half, lean = thickness / 2, euler(0, tilt, 0)
+
+    def width(s: Array) -> Array:
+        w: Array = 1 - pinch * np.exp(-((s / neck) ** 2))
+        return w
+
+    def surface(longitude: Array, latitude: Array) -> Array:
+        d = direction(longitude, latitude)
+        w = half * width(d[2])
+        return np.tensordot(lean, np.stack([w * d[0], w * d[1], length / 2 * d[2]]), axes=1)
+
+    def inside(X: Array) -> Array:
+        x, y, z = lean.T @ X
+        s = 2 * z / length
+        value: Array = (x**2 + y**2) / (half * width(s)) ** 2 + s**2 - 1
+        return value
+
+    patches = (Patch(surface, (-np.pi, np.pi), (-np.pi / 2, np.pi / 2), ("periodic", "gauss")),)
+    lost = 2 * pinch * _gauss_moment(neck) - pinch**2 * _gauss_moment(neck / math.sqrt(2))
+    return Body(
+        (inside,),
+        patches,
+        volume=np.pi * half**2 * length / 2 * (4 / 3 - lost),
+        area=figures(patches)[1],
+        parameters={"length": length, "thickness": thickness, "pinch": pinch, "neck": neck, "tilt": tilt},
     )
 
 
