@@ -13,15 +13,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import tomli_w
-
 from stackloft.model.errors import InputError, UsageError
+from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.tri_mesh import TriMesh
 from stackloft.pipeline.outcome import Outcome
-from stackloft.registry.build import build
-from stackloft.registry.scan import catalogue
+from stackloft.pipeline.recipe_file import write_recipe
+from stackloft.registry import build, catalogue
 from stackloft.report.overview import write_overview
 from stackloft.report.thumbnails import Thumbnail
 from stackloft.report.whole_file import whole_file
@@ -55,7 +56,8 @@ class RunFolder:
         PluginError, UsageError
             An unknown writer, or an option it does not have.
         """
-        return cls(path, {name: writer(name, settings) for name in solids})
+        _must_be_used(settings, solids)
+        return cls(path, {name: solid_writer(name, settings) for name in solids})
 
     def write(self, outcome: Outcome) -> Iterator[Path]:
         """Write every file, each whole or not at all, and name it once it is there.
@@ -71,26 +73,28 @@ class RunFolder:
             yield self.path / name
 
     def _files(self, outcome: Outcome) -> Iterator[tuple[str, Callable[[BinaryIO], None]]]:
-        result = outcome.result
-        yield "measurement.json", lambda stream: build("writer", "json").write(result, stream)
-        yield "recipe.toml", lambda stream: tomli_w.dump(without_none(result.recipe), stream)
-        yield "sections.csv", lambda stream: build("writer", "csv").write(result, stream)
-        contours = outcome.contours
-        if contours is not None:
-            small = thumbnails_of(outcome)
-            yield "overview.png", lambda stream: write_overview(contours, small, stream)
+        yield "measurement.json", partial(build("writer", "json").write, outcome.result)
+        yield "recipe.toml", partial(write_recipe, outcome.result.recipe)
+        yield "sections.csv", partial(build("writer", "csv").write, outcome.result)
+        if outcome.contours is not None:
+            yield "overview.png", partial(write_overview, outcome.contours, thumbnails_of(outcome))
         for name, chosen in self.solids.items():
-            solid = _solid_for(chosen, name, outcome)
-            yield (
-                f"solid{chosen.suffixes[0]}",
-                lambda stream, chosen=chosen, solid=solid: chosen.write(solid, stream),
-            )
+            yield f"solid{chosen.suffixes[0]}", partial(chosen.write, _solid_for(chosen, name, outcome))
 
 
-def writer(name: str, settings: Settings) -> Any:
-    """Return the writer `name` with its options from `settings`, the more particular winning."""
+def solid_writer(name: str, settings: Settings) -> Any:
+    """Return the writer `name` with its options from `settings`, the more particular winning.
+
+    Raises
+    ------
+    PluginError, UsageError
+        No such writer, it writes no solid, or an option is not allowed.
+    """
     options = {**settings.get("writer", {}), **settings.get(name, {}), **settings.get(f"writer.{name}", {})}
-    return build("writer", name, options)
+    built = build("writer", name, options)
+    if not any(issubclass(kind, (LoftedSolid, TriMesh)) for kind in built.accepts):
+        raise UsageError(f"writer {name} writes no solid", where="--write")
+    return built
 
 
 def split_settings(settings: Settings) -> tuple[dict[str, Mapping[str, Any]], dict[str, Mapping[str, Any]]]:
@@ -109,27 +113,18 @@ def split_settings(settings: Settings) -> tuple[dict[str, Mapping[str, Any]], di
     )
 
 
-def must_be_asked(settings: Settings, solids: Sequence[str]) -> None:
-    """Raise UsageError when a writer's option is set and that writer writes nothing."""
-    used = {"writer", *solids, *(f"writer.{name}" for name in solids)} if solids else set()
+def _must_be_used(settings: Settings, solids: Sequence[str]) -> None:
+    used = {*solids, *(f"writer.{name}" for name in solids), *(["writer"] if solids else [])}
     for key in settings:
         if key not in used:
-            raise UsageError("no such writer is used", where=f"--set {key}.…", fix="ask for it with --write")
+            name = key.removeprefix("writer.")
+            raise UsageError("this writer writes no solid", where=f"--set {key}", fix=f"add --write {name}")
 
 
 def thumbnails_of(outcome: Outcome) -> tuple[Thumbnail, ...]:
     """Return the thumbnails that a `ThumbnailSink` kept during the run; empty when no slice was decoded."""
     kept = (product for product in outcome.sink_products if isinstance(product, tuple))
     return next((item for item in kept if item and isinstance(item[0], Thumbnail)), ())
-
-
-def without_none(value: Any) -> Any:
-    """Return `value` without the keys whose value is None, which TOML cannot say."""
-    if isinstance(value, Mapping):
-        return {str(key): without_none(item) for key, item in value.items() if item is not None}
-    if isinstance(value, (list, tuple)):
-        return [without_none(item) for item in value]
-    return value
 
 
 def _solid_for(chosen: Any, name: str, outcome: Outcome) -> Any:

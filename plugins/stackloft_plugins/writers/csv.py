@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from dataclasses import dataclass
 from typing import BinaryIO, ClassVar
 
@@ -44,4 +45,9 @@ class CsvWriter:
 
 def _cells(object_id: int, row: SectionRow) -> tuple[int | str, ...]:
     lengths = (row.z, row.area, row.perimeter, *row.centroid)
-    return (object_id, row.index, *(repr(float(value)) for value in lengths), row.loops, row.holes)
+    return (object_id, row.index, *map(_cell, lengths), row.loops, row.holes)
+
+
+def _cell(value: float) -> str:
+    """Return the shortest text that reads back to the same number; nothing for NaN."""
+    return repr(float(value)) if math.isfinite(value) else ""

@@ -117,12 +117,11 @@ def _figure(figure: Figure | None) -> dict[str, Any] | None:
             found=f"{figure.value} {figure.unit}",
             fix="please report it with the recipe that led to it",
         )
-    interval = plain(figure.interval95)
     return {
         "value": float(figure.value),
         "unit": figure.unit,
         "standard_uncertainty": plain(figure.standard_uncertainty),
-        "interval95": None if interval is None or None in interval else interval,
+        "interval95": _pair(figure.interval95),
         "method": figure.method,
     }
 
@@ -146,7 +145,13 @@ def _section(row: SectionRow) -> dict[str, Any]:
         "z": plain(row.z),
         "area": plain(row.area),
         "perimeter": plain(row.perimeter),
-        "centroid": plain(row.centroid),
+        "centroid": _pair(row.centroid),
         "loops": row.loops,
         "holes": row.holes,
     }
+
+
+def _pair(pair: tuple[float, float] | None) -> list[float] | None:
+    """Return both numbers, or None when one is not known."""
+    numbers = plain(pair)
+    return None if numbers is None or None in numbers else list(numbers)

@@ -1,0 +1,52 @@
+# stackloft: `make demo` and `make test` are all that a newcomer needs; `make help` lists the rest.
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+TREES := core plugins tests benchmarks
+PYTHON_VERSIONS := 3.11 3.12 3.13 3.14
+UV ?= uv
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check prove bench lock clean
+.DELETE_ON_ERROR:
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
+
+# The environment is made anew when the locks or the declared dependencies and entry points change.
+$(READY): pyproject.toml requirements/make_venv.sh $(wildcard requirements/py*.txt)
+	sh requirements/make_venv.sh $(VENV)
+	@touch $@
+
+demo: $(READY) ## measure a sample stack; results in demo_out/
+	$(BIN)/stackloft measure sample_stacks/apple --out demo_out --write stl
+
+test: $(READY) ## the tests, within ten minutes on two cores
+	$(BIN)/python -m pytest -n 2 -m "not prove"
+
+check: $(READY) ## style, types, architecture, dependencies
+	$(BIN)/ruff format --check $(wildcard $(TREES))
+	$(BIN)/ruff check $(wildcard $(TREES))
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/deptry core plugins
+	$(BIN)/typos
+	$(BIN)/validate-pyproject pyproject.toml
+
+prove: $(READY) ## the full counts that the claims name; slow
+	$(BIN)/python -m pytest -n 2 -m prove
+
+bench: $(READY) ## speed of the parts, one script after the other
+	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+
+lock: ## renew requirements/py*.txt from pyproject.toml (needs uv: https://docs.astral.sh/uv/)
+	@command -v $(UV) >/dev/null || { echo "uv is not installed: pipx install uv, or make lock UV=path/to/uv"; exit 1; }
+	for version in $(PYTHON_VERSIONS); do \
+	  $(UV) pip compile pyproject.toml --extra dev --python-version $$version --python-platform linux \
+	    --generate-hashes --no-annotate --no-header --quiet --upgrade \
+	    --output-file requirements/py$$version.txt || exit 1; \
+	done
+
+clean: ## remove the environment and everything that a run left behind
+	rm -rf $(VENV) demo_out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

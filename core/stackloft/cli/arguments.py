@@ -1,0 +1,94 @@
+"""Every argument and option of the commands: its name and its help."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Units(StrEnum):
+    """Units that figures are shown in; files and JSON keep millimetres."""
+
+    CM = "cm"
+    MM = "mm"
+    M = "m"
+    UM = "um"
+    IN = "in"
+
+
+Source = Annotated[
+    Path,
+    typer.Argument(metavar="SOURCE", help="A folder of slice photographs, or a file.", show_default=False),
+]
+Json = Annotated[bool, typer.Option("--json", help="JSON on stdout, and nothing else there.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress and no table.")]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder for the run's files."),
+]
+Write = Annotated[
+    str | None,
+    typer.Option("--write", metavar="NAME,…", help="Also write the solid into --out: stl, ply."),
+]
+ShownUnits = Annotated[Units, typer.Option("--units", help="Unit of the table.")]
+Reader = Annotated[
+    str | None,
+    typer.Option("--reader", metavar="NAME", help="Reader to use instead of the one that knows SOURCE."),
+]
+Method = Annotated[
+    str | None,
+    typer.Option("--method", metavar="NAME,…|all", help="Method, the first is the main one."),
+]
+Points = Annotated[int | None, typer.Option("--points", help="Boundary points per section.")]
+Ends = Annotated[
+    str | None,
+    typer.Option(
+        "--ends",
+        metavar="FIRST[,LAST]",
+        help="auto, face, flat:LEN, round, round:LEN or point:LEN; LEN from the last section to the end.",
+    ),
+]
+Height = Annotated[
+    str | None,
+    typer.Option("--height", metavar="LEN", help="The body's whole length along the axis."),
+]
+PixelSize = Annotated[
+    str | None,
+    typer.Option("--pixel-size", metavar="LEN", help="Side of one pixel, as in 0.21mm."),
+]
+Thickness = Annotated[
+    str | None,
+    typer.Option("--thickness", metavar="LEN", help="From one cut to the next."),
+]
+Positions = Annotated[
+    str | None,
+    typer.Option("--positions", metavar="LEN,LEN,…", help="Position of every slice instead."),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="FAMILY.OPTION=VALUE",
+        help="Any option of a plug-in (see `stackloft plugins show`); may be repeated.",
+    ),
+]
+PluginName = Annotated[str, typer.Argument(metavar="NAME", help="A name or family.name.", show_default=False)]
+RecipeFile = Annotated[
+    Path | None,
+    typer.Option("--recipe", metavar="FILE", help="A recipe.toml of an earlier run, run again."),
+]
+
+
+def names_of(text: str | None) -> tuple[str, ...]:
+    """Return the names in a comma-separated list, each once and in order.
+
+    Examples
+    --------
+    >>> names_of("stl, ply,stl")
+    ('stl', 'ply')
+    """
+    names = (name.strip() for name in (text or "").split(","))
+    return tuple(dict.fromkeys(name for name in names if name))

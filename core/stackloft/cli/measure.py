@@ -1,0 +1,121 @@
+"""``stackloft measure``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from stackloft.cli.progress import progress_display
+from stackloft.cli.result_table import quiet_lines, show_result
+from stackloft.cli.screen import console
+from stackloft.model.errors import UsageError
+from stackloft.pipeline.outcome import Outcome
+from stackloft.pipeline.recipe_file import load_recipe
+from stackloft.pipeline.request import MeasureRequest
+from stackloft.pipeline.run import measure
+from stackloft.registry.build import build
+from stackloft.report.run_folder import RunFolder
+from stackloft.report.thumbnails import ThumbnailSink
+from stackloft.report.whole_file import writable_folder
+
+
+def request_of(
+    source: Path,
+    *,
+    reader: str | None,
+    method: str | None,
+    flags: Mapping[str, Any],
+    settings: Mapping[str, Mapping[str, Any]],
+    recipe: Path | None = None,
+) -> MeasureRequest:
+    """Return the request that the command line makes; what it says wins over the recipe file.
+
+    Parameters
+    ----------
+    source : Path
+        File or folder.
+    reader, method : str, optional
+        By name.
+    flags : mapping
+        General flags by option name, as text; None is left out.
+    settings : mapping
+        What ``--set`` said, by plug-in.
+    recipe : Path, optional
+        A ``recipe.toml``.
+    """
+    base = MeasureRequest(source) if recipe is None else load_recipe(recipe, source)
+    return replace(
+        base,
+        reader=reader or base.reader,
+        method=method or base.method,
+        shared={name: value for name, value in flags.items() if value is not None},
+        settings=settings,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """What a person wants to be given."""
+
+    folder: Path | None
+    solids: tuple[str, ...]
+    """Writers of the solid, by name."""
+    writer_settings: Mapping[str, Mapping[str, Any]]
+    json: bool
+    quiet: bool
+    unit: str
+
+
+def run(request: MeasureRequest, output: Output) -> None:
+    """Measure, write the files asked for, and show the figures.
+
+    Raises
+    ------
+    StackloftError
+        The source cannot be measured, the request makes no sense, or a file cannot be written.
+    """
+    folder = _folder(output, request.source)
+    with progress_display(quiet=output.quiet) as progress:
+        outcome = measure(request, progress=progress, sinks=[ThumbnailSink()] if folder else [])
+        files: list[Path] = []
+        if folder is not None:
+            progress.begin("write", None)
+            for path in folder.write(outcome):
+                files.append(path)
+                progress.advance()
+            progress.end()
+    _show(outcome, files, output)
+
+
+def _folder(output: Output, source: Path) -> RunFolder | None:
+    """Return where the files go, made and proved writable before anything is measured."""
+    if output.folder is not None:
+        if output.folder.resolve() == source.resolve():
+            raise UsageError(
+                "is the source itself, and the overview would be its next slice",
+                where=f"--out {output.folder}",
+                fix="give another folder",
+            )
+        plan = RunFolder.plan(output.folder, output.solids, output.writer_settings)
+        writable_folder(output.folder)
+        return plan
+    if output.solids:
+        raise UsageError("needs a folder", where="--write", fix="give --out DIR as well")
+    return None
+
+
+def _show(outcome: Outcome, files: list[Path], output: Output) -> None:
+    result = outcome.result
+    if output.json:
+        build("writer", "json").write(result, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+    if not output.quiet:
+        show_result(console(stderr=output.json), result, files, output.unit)
+        return
+    if not output.json:
+        print(*quiet_lines(result, output.unit), sep="\n")  # noqa: T201 - the command's own output
+    for notice in result.warnings:
+        print(f"stackloft: {notice.code}: {notice.message}", file=sys.stderr)  # noqa: T201
