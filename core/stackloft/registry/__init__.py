@@ -7,10 +7,10 @@ from stackloft.registry.build import build, failure, instantiate, options_of, pa
 from stackloft.registry.choose_reader import Probe, choose_reader, describe, probe_all
 from stackloft.registry.fields import OptionField, fields_of
 from stackloft.registry.find import find, locate, nearest
-from stackloft.registry.loading import Loaded, Quarantined, load
+from stackloft.registry.loading import Loaded, Quarantined, load, rescan
 from stackloft.registry.member_checks import RUN
 from stackloft.registry.options_model import plain, schema, validate
-from stackloft.registry.scan import Listing, catalogue, rescan
+from stackloft.registry.scan import Listing, catalogue
 
 __all__ = [
     "RUN",

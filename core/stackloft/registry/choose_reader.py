@@ -121,10 +121,15 @@ def describe(path: Path) -> str:
     items = list(path.iterdir())
     files = Counter(item.suffix.lower() or "without suffix" for item in items if not item.is_dir())
     folders = sum(item.is_dir() for item in items)
-    parts = [f"{count} × {suffix}" for suffix, count in files.most_common(5)]
+    parts = [f"{count} × {suffix}" for suffix, count in sorted(files.items(), key=_rank)[:5]]
     if folders:
         parts.append(f"{folders} folder{'s' if folders > 1 else ''}")
     if not parts:
         return "an empty folder"
     count = files.total()
     return f"{count} file{'s' if count != 1 else ''}: {', '.join(parts)}" if count else parts[0]
+
+
+def _rank(counted: tuple[str, int]) -> tuple[int, str]:
+    """Most frequent first, then by name, whatever order the folder is listed in."""
+    return -counted[1], counted[0]

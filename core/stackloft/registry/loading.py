@@ -11,7 +11,7 @@ from typing import Any
 from stackloft.model.errors import PluginError
 from stackloft.model.notices import Notice
 from stackloft.registry.member_checks import faults_of, minor_api_notice
-from stackloft.registry.scan import Listing
+from stackloft.registry.scan import Listing, scan
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +79,12 @@ def load(listing: Listing) -> Loaded | Quarantined:
     if faults:
         return Quarantined(listing, "; ".join(faults))
     return Loaded(listing, plugin, minor_api_notice(listing.key, plugin.api))
+
+
+def rescan() -> None:
+    """Forget the scan and what was loaded, for a process in which distributions came or went."""
+    scan.cache_clear()
+    load.cache_clear()
 
 
 def _resolve(target: str) -> Any:

@@ -59,19 +59,15 @@ def catalogue(family: str | None = None) -> tuple[Listing, ...]:
     ['histogram']
     """
     if family is None:
-        return _scan()
+        return scan()
     if family not in FAMILIES:
         raise PluginError("no such plug-in family", found=family, expected=", ".join(FAMILIES))
-    return tuple(listing for listing in _scan() if listing.family == family)
-
-
-def rescan() -> None:
-    """Forget the scan, for a process in which distributions came or went."""
-    _scan.cache_clear()
+    return tuple(listing for listing in scan() if listing.family == family)
 
 
 @cache
-def _scan() -> tuple[Listing, ...]:
+def scan() -> tuple[Listing, ...]:
+    """Return every registered plug-in; see `catalogue`, which answers questions about them."""
     found = [_listing(entry, dist) for dist in _shadowing_first() for entry in _ours(dist)]
     holders: dict[tuple[str, str], list[str]] = {}
     for listing in found:
