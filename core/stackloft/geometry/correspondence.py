@@ -1,0 +1,133 @@
+"""Which point of one section belongs to which point of the next.
+
+Equal fractions of arc length drift along the surface where a section turns concave, and the drift adds
+false area. Here the points of all sections slide along their curves until the columns they form are as
+short as possible without bunching:
+
+    E = ∫∫ |∂Q/∂z|² dz dt  +  λ ∫∫ (∂s/∂t / w − 1)² dz dt
+
+Q is the point relative to its section's centroid, s the fraction of arc length, w the even spacing. Both
+terms are integrals, so the answer does not depend on how many sections there are. Solved by damped
+Gauss-Newton; the matrix is banded (points first, sections second).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+
+from stackloft.geometry.curve_stack import CurveStack
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+EVENNESS = 10.0
+"""λ: what uneven spacing costs against the slope of the columns."""
+HOLD = 0.3
+"""Pull to the first guess, which keeps all columns from sliding round together."""
+ITERATIONS = 6
+
+
+def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolArray) -> FloatArray:
+    """Return fractions of arc length whose points form the shortest even columns.
+
+    Parameters
+    ----------
+    curves : CurveStack
+        m closed curves.
+    z : (m,) array
+        Positions, mm.
+    s : (m, N) array
+        First guess, increasing along each row over less than one turn.
+    fixed : (m, N) bool array
+        Points that stay (corners).
+
+    Returns
+    -------
+    (m, N) array
+        Increasing along each row.
+    """
+    if len(s) < 2:
+        return s
+    section = np.arange(len(s))[:, None]
+    spacing = _gaps(s)
+    weight_pair, weight_own = _weights(z)
+    current = s
+    for _ in range(ITERATIONS):
+        point, slope = curves.at(section, current)
+        point = point - curves.centroids[:, None, :]
+        step = _newton_step(point, slope, current, s, spacing, weight_pair, weight_own, fixed)
+        largest = np.abs(step / spacing).max()
+        current = _in_order(current, step, spacing)
+        if largest < 1e-3:
+            break
+    return current
+
+
+def _weights(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return 1/h of each pair and each section's share of the length, both over the points."""
+    gap = np.diff(z)
+    share = np.zeros(len(z))
+    share[:-1] += 0.5 * gap
+    share[1:] += 0.5 * gap
+    return 1.0 / gap, share
+
+
+def _gaps(s: FloatArray) -> FloatArray:
+    """Return s[j + 1] - s[j] round the loop, (m, N)."""
+    return np.mod(np.roll(s, -1, axis=1) - s, 1.0)
+
+
+def _newton_step(
+    point: FloatArray,
+    slope: FloatArray,
+    current: FloatArray,
+    first: FloatArray,
+    spacing: FloatArray,
+    weight_pair: FloatArray,
+    weight_own: FloatArray,
+    fixed: BoolArray,
+) -> FloatArray:
+    """Return the Gauss-Newton step of E for all points, (m, N)."""
+    m, n = current.shape
+    bands = np.zeros((n + 1, m * n))
+    diagonal = np.zeros((m, n))
+    gradient = np.zeros((m, n))
+    # columns: residual Q[i+1] - Q[i]
+    rise = point[1:] - point[:-1]
+    pair = weight_pair[:, None]
+    diagonal[1:] += pair * (slope[1:] ** 2).sum(-1)
+    diagonal[:-1] += pair * (slope[:-1] ** 2).sum(-1)
+    gradient[1:] += pair * (rise * slope[1:]).sum(-1)
+    gradient[:-1] -= pair * (rise * slope[:-1]).sum(-1)
+    across = np.zeros((m, n))
+    across[:-1] = -pair * (slope[1:] * slope[:-1]).sum(-1)
+    # evenness: residual gap / spacing - 1
+    stiff = EVENNESS * weight_own[:, None] / spacing**2
+    stretch = stiff * (_gaps(current) - spacing)
+    gradient += np.roll(stretch, 1, axis=1) - stretch
+    diagonal += stiff + np.roll(stiff, 1, axis=1)
+    along = -stiff
+    hold = HOLD * weight_own[:, None] / spacing**2
+    diagonal += hold
+    gradient += hold * (current - first)
+    diagonal[fixed] += 1e12 * diagonal.max()
+    gradient[fixed] = 0.0
+    bands[0] = diagonal.ravel()
+    bands[1].reshape(m, n)[:, :-1] = along[:, :-1]
+    bands[n - 1].reshape(m, n)[:, 0] = along[:, -1]
+    bands[n] = across.ravel()
+    return -np.asarray(solveh_banded(bands, gradient.ravel(), lower=True, check_finite=False)).reshape(m, n)
+
+
+def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> FloatArray:
+    """Return current + step, shortened where points would pass each other or bunch."""
+    for _ in range(12):
+        trial = current + step
+        gap = np.roll(trial, -1, axis=1) - trial
+        gap[:, -1] += 1.0
+        if (gap > 0.2 * spacing).all():
+            return trial
+        step = 0.5 * step
+    return current

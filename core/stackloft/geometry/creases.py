@@ -1,0 +1,49 @@
+"""Sections at which the body's side turns sharply, as a double cone's does at its equator."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+SHARP = np.radians(25.0)
+"""Smallest turn of a crease."""
+QUIET = 0.2
+"""Largest turn of the neighbouring sections, as a fraction of the crease's."""
+
+
+def find_creases(rows: FloatArray) -> BoolArray:
+    """Return the rows at which the columns turn sharply while they run smoothly on both sides.
+
+    Parameters
+    ----------
+    rows : (n, N, 3) array
+        Corresponding points of the rows, mm, poles included.
+
+    Returns
+    -------
+    (n,) bool array
+
+    Examples
+    --------
+    >>> t = 2 * np.pi * np.arange(16) / 16
+    >>> ring = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
+    >>> radius, z = [1.0, 2.0, 3.0, 2.0, 1.0], [-2.0, -1.0, 0.0, 1.0, 2.0]
+    >>> find_creases(np.stack([ring * r + [0, 0, h] for r, h in zip(radius, z)])).tolist()
+    [False, False, True, False, False]
+    """
+    n = len(rows)
+    creases = np.zeros(n, dtype=bool)
+    if n < 5:
+        return creases
+    step = np.diff(rows, axis=0)
+    length = np.linalg.norm(step, axis=2, keepdims=True)
+    direction = step / np.maximum(length, 1e-300)
+    cosine = np.clip((direction[1:] * direction[:-1]).sum(axis=2), -1.0, 1.0)
+    turn = np.arccos(cosine).mean(axis=1)  # of rows 1 … n - 2
+    middle = turn[1:-1]
+    quiet = np.maximum(turn[:-2], turn[2:]) < QUIET * middle
+    creases[2:-2] = (middle > SHARP) & quiet
+    return creases

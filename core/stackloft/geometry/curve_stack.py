@@ -1,0 +1,173 @@
+"""One closed curve per section, all evaluated together.
+
+A curve is the piecewise cubic through its loop's points: C² between corners, broken at them. The curves
+of a stack share one parameter g = section + s, where s in [0, 1) is the fraction of arc length from the
+curve's *canonical start*, which depends on the curve's shape alone and not on the vertex it was given
+from: the phase of the first Fourier coefficient of the curve (Kuhl & Giardina 1982).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.geometry.arc_splines import WRAP, spline_tangents
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(4)
+_GAUSS_X, _GAUSS_W = 0.5 * (_GAUSS_X + 1.0), 0.5 * _GAUSS_W
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CurveStack:
+    """Closed piecewise-cubic curves, one per section."""
+
+    points: FloatArray
+    """(n, 2) mm: segment starts, section after section."""
+    ends: FloatArray
+    """(n, 2) mm: segment ends."""
+    leaving: FloatArray
+    """(n, 2) dP/dx at segment starts, x in [0, 1] along the segment."""
+    arriving: FloatArray
+    """(n, 2) dP/dx at segment ends."""
+    knots: FloatArray
+    """(n + 1,) global parameter of the segment starts, increasing, from first[0] to the last end."""
+    first: IntArray
+    """(m + 1,) first segment of each section."""
+    lengths: FloatArray
+    """(m,) mm: perimeters."""
+    starts: FloatArray
+    """(m,) arc-length fraction, from the first vertex, of the canonical start."""
+    centroids: FloatArray
+    """(m, 2) mm: area centroids."""
+    areas: FloatArray
+    """(m,) mm²"""
+
+    def __len__(self) -> int:
+        return len(self.lengths)
+
+    def at(self, section: IntArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return points and unit-fraction derivatives on the curves.
+
+        Parameters
+        ----------
+        section : int array, broadcastable with `s`
+            Section numbers.
+        s : array
+            Fractions of arc length from each canonical start (any real number; wraps).
+
+        Returns
+        -------
+        points : (..., 2) array, mm
+        derivative : (..., 2) array
+            dP/ds, mm; its length is close to the perimeter.
+        """
+        g = section + np.mod(s + self.starts[section], 1.0)
+        # rounding can carry g to the next section's first knot: hold it to its own section
+        index = np.searchsorted(self.knots, g, side="right") - 1
+        index = np.clip(index, self.first[section], self.first[section + 1] - 1)
+        span = self.knots[index + 1] - self.knots[index]
+        x = ((g - self.knots[index]) / span)[..., None]
+        p0, p1, d0, d1 = self.points[index], self.ends[index], self.leaving[index], self.arriving[index]
+        rise = p1 - p0
+        a, b = d0 - rise, rise - d1
+        point = p0 + x * (rise + (1.0 - x) * (a * (1.0 - x) + b * x))
+        slope = rise + (1.0 - 2.0 * x) * (a * (1.0 - x) + b * x) + x * (1.0 - x) * (b - a)
+        return point, slope / span[..., None]
+
+
+def fit_curves(loops: list[FloatArray], corners: list[IntArray]) -> CurveStack:
+    """Return the interpolating closed curves of one loop per section.
+
+    Parameters
+    ----------
+    loops : list of (k_i, 2) arrays
+        Vertices, mm, counter-clockwise, no repeated end point, no two neighbours equal.
+    corners : list of (c_i,) int arrays
+        Vertices at which the curve may turn sharply.
+
+    Examples
+    --------
+    >>> t = 2 * np.pi * np.arange(80) / 80
+    >>> curves = fit_curves([np.stack([np.cos(t), np.sin(t)], axis=1)], [np.array([], dtype=int)])
+    >>> bool(abs(curves.areas[0] - np.pi) < 1e-6)
+    True
+    """
+    p0, p1, d0, d1 = _hermite_segments(loops, corners)
+    counts = np.array([len(loop) for loop in loops])
+    first = np.concatenate([[0], np.cumsum(counts)])
+    return _with_measures(p0, p1, d0, d1, first)
+
+
+def _hermite_segments(
+    loops: list[FloatArray], corners: list[IntArray]
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the segments' end points and end tangents, loop after loop, vertex after vertex."""
+    pieces, arc_starts, leaving_at, arriving_at, order = [], [], [], [], []
+    total, base = 0, 0
+    for loop, marks in zip(loops, corners, strict=True):
+        k = len(loop)
+        for index, inner in _arcs(k, marks):
+            arc_starts.append(total)
+            leaving_at.append(total + inner)
+            arriving_at.append(total + inner + 1)
+            order.append(base + index[inner] % k)
+            pieces.append(loop[index % k])
+            total += len(index)
+        base += k
+    points = np.concatenate(pieces)
+    chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    nodes = np.concatenate([[0.0], np.cumsum(np.maximum(chord, 1e-300))])
+    tangents = spline_tangents(nodes, points, np.array(arc_starts))
+    at, to, back = np.concatenate(leaving_at), np.concatenate(arriving_at), np.concatenate(order)
+    n = base
+    p0, p1, d0, d1 = (np.empty((n, 2)) for _ in range(4))
+    length = chord[at][:, None]
+    p0[back], p1[back] = points[at], points[to]
+    d0[back], d1[back] = tangents[at] * length, tangents[to] * length
+    return p0, p1, d0, d1
+
+
+def _arcs(k: int, marks: IntArray) -> list[tuple[IntArray, IntArray]]:
+    """Return (vertex numbers, positions of the segments that count) of each arc of a loop."""
+    if len(marks) == 0:
+        wrap = min(WRAP, 4 * k)
+        return [(np.arange(-wrap, k + wrap + 1), np.arange(wrap, wrap + k))]
+    ordered = np.sort(marks)
+    following = np.append(ordered[1:], ordered[0] + k)
+    return [(np.arange(a, b + 1), np.arange(b - a)) for a, b in zip(ordered, following, strict=True)]
+
+
+def _with_measures(
+    p0: FloatArray, p1: FloatArray, d0: FloatArray, d1: FloatArray, first: IntArray
+) -> CurveStack:
+    """Return the stack with perimeters, areas, centroids and canonical starts, by Gauss per segment."""
+    x = _GAUSS_X[:, None, None]
+    rise = p1 - p0
+    a, b = d0 - rise, rise - d1
+    point = p0 + x * (rise + (1.0 - x) * (a * (1.0 - x) + b * x))
+    slope = rise + (1.0 - 2.0 * x) * (a * (1.0 - x) + b * x) + x * (1.0 - x) * (b - a)
+    section = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    origin = p0[first[:-1]]
+    local = point - origin[section]
+    cross = local[..., 0] * slope[..., 1] - local[..., 1] * slope[..., 0]
+    areas = 0.5 * np.add.reduceat(_GAUSS_W @ cross, first[:-1])
+    moments = np.add.reduceat(np.einsum("g,gn,gnd->nd", _GAUSS_W, cross, local), first[:-1])
+    centroids = origin + moments / (3.0 * areas[:, None])
+    speed = np.hypot(slope[..., 0], slope[..., 1])
+    segment = _GAUSS_W @ speed
+    lengths = np.add.reduceat(segment, first[:-1])
+    before = np.concatenate([[0.0], np.cumsum(segment)])[:-1]
+    fraction = (before - before[first[:-1]][section]) / lengths[section]
+    # first Fourier coefficient of the curve; its phase is the canonical start (Kuhl & Giardina 1982)
+    phase = fraction + _GAUSS_X[:, None] * (segment / lengths[section])
+    arm = (point - centroids[section]) @ np.array([1.0, 1.0j])
+    weighted = _GAUSS_W @ (arm * np.exp(-2j * np.pi * phase) * speed)
+    coefficient = np.add.reduceat(weighted, first[:-1])
+    starts = -np.angle(coefficient) / (2.0 * np.pi)
+    knots = np.append(section + fraction, float(len(lengths)))
+    return CurveStack(p0, p1, d0, d1, knots, first, lengths, starts, centroids, areas)

@@ -1,0 +1,116 @@
+"""Where each section's loop starts: phases that make neighbouring sections correspond.
+
+The phase of a section against its neighbour maximises the circular correlation of position, of tangent
+and of corners; all phases are tried at once by FFT. Position holds near-circular loops still (no spin),
+tangents and corners follow a real twist.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+TIE = 0.02
+"""Two phases whose scores (0 to 3) differ by less are a near tie."""
+APART = 1.0 / 16.0
+"""Phases closer than this fraction of a turn are the same maximum."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeamPhases:
+    """Phases of a stack."""
+
+    phases: FloatArray
+    """(m,) fraction of the loop between its canonical start and its seam."""
+    tied: IntArray
+    """Pairs (i, i + 1), given by i, that two distinct phases fit almost equally well."""
+
+
+def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> SeamPhases:
+    """Return the phases of m sections sampled at K equal fractions of their loops.
+
+    Parameters
+    ----------
+    points : (m, K, 2) array
+        Positions relative to each loop's centroid, mm.
+    tangents : (m, K, 2) array
+        dP/ds; only its direction is used.
+    corners : list of (c_i,) arrays
+        Corner positions as fractions of the loop.
+
+    Returns
+    -------
+    SeamPhases
+        Section i's point at phases[i] + s corresponds to section i + 1's at phases[i + 1] + s. The
+        score depends on differences of phase alone, so solving pair after pair is the optimum over
+        the whole stack; among near ties the one that continues the twist so far is taken.
+
+    Examples
+    --------
+    >>> t = 2 * np.pi * np.arange(64) / 64
+    >>> square = np.stack([np.cos(t) + 0.1 * np.cos(3 * t), np.sin(t) - 0.1 * np.sin(3 * t)], axis=1)
+    >>> stack = np.stack([square, np.roll(square, 8, axis=0)])
+    >>> steps = np.roll(stack, -1, axis=1) - np.roll(stack, 1, axis=1)
+    >>> solve_phases(stack, steps, [np.array([]), np.array([])]).phases.round(3)
+    array([0.   , 0.125])
+    """
+    score = _scores(points, tangents, corners)
+    steps, tied = [], []
+    twist = 0.0
+    for pair, row in enumerate(score):
+        twist, is_tied = _best_step(row, twist)
+        steps.append(twist)
+        if is_tied:
+            tied.append(pair)
+    phases = np.concatenate([[0.0], np.cumsum(steps)])
+    return SeamPhases(phases, np.array(tied, dtype=np.int64))
+
+
+def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
+    """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
+    to_complex = np.array([1.0, 1.0j])
+    position = points @ to_complex
+    direction = tangents @ to_complex
+    direction /= np.abs(direction)
+    score = _correlation(position) + _correlation(direction)
+    if any(len(c) for c in corners):
+        score += _correlation(_corner_signal(corners, points.shape[1]))
+    return score
+
+
+def _correlation(signal: NDArray[np.complex128]) -> FloatArray:
+    """Return the normalised circular correlation of each row with the next, at every shift."""
+    norm = np.sqrt((np.abs(signal) ** 2).sum(axis=1))
+    spectrum = np.fft.fft(signal, axis=1) / np.where(norm > 0, norm, 1.0)[:, None]
+    return np.asarray(np.fft.ifft(np.conj(spectrum[:-1]) * spectrum[1:], axis=1).real)
+
+
+def _corner_signal(corners: list[FloatArray], samples: int) -> NDArray[np.complex128]:
+    """Return a bump of about 2 % of the loop at every corner, (m, samples)."""
+    grid = np.arange(samples) / samples
+    rows = np.zeros((len(corners), samples))
+    for k, marks in enumerate(corners):
+        away = np.abs((grid - marks[:, None] + 0.5) % 1.0 - 0.5)
+        rows[k] = np.exp(-0.5 * (away / 0.02) ** 2).sum(axis=0)
+    return rows.astype(np.complex128)
+
+
+def _best_step(score: FloatArray, twist: float) -> tuple[float, bool]:
+    """Return the best shift as a fraction in (-½, ½], and whether another fits almost as well."""
+    before, after = np.roll(score, 1), np.roll(score, -1)
+    peaks = np.flatnonzero((score >= before) & (score > after))
+    if len(peaks) == 0:
+        return 0.0, False
+    curvature = before[peaks] - 2.0 * score[peaks] + after[peaks]
+    shift = 0.5 * (before[peaks] - after[peaks]) / np.where(curvature < 0, curvature, -1.0)
+    fraction = ((peaks + np.clip(shift, -0.5, 0.5)) / len(score) + 0.5) % 1.0 - 0.5
+    best = score[peaks].max()
+    near = fraction[score[peaks] >= best - TIE]
+    chosen = near[np.argmin(np.round(np.abs(near - twist), 9))]
+    apart = np.abs((near - chosen + 0.5) % 1.0 - 0.5)
+    return float(chosen), bool((apart > APART).any())

@@ -1,0 +1,54 @@
+"""Area, centroid and perimeter of closed polygons (shoelace formula; Green 1828)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+def polygon_area(points: FloatArray) -> float:
+    """Return the signed area of a closed polygon.
+
+    Parameters
+    ----------
+    points : (k, 2) array
+        Vertices in order, mm; the last is joined to the first.
+
+    Returns
+    -------
+    float
+        mm², positive when counter-clockwise.
+
+    Examples
+    --------
+    >>> polygon_area(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
+    2.0
+    """
+    x, y = (points - points[0]).T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def polygon_perimeter(points: FloatArray) -> float:
+    """Return the perimeter, mm, of a closed polygon given as (k, 2) vertices."""
+    return float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
+
+
+def polygon_centroid(points: FloatArray) -> FloatArray:
+    """Return the area centroid (x, y), mm, of a closed polygon given as (k, 2) vertices.
+
+    Examples
+    --------
+    >>> polygon_centroid(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
+    array([1. , 0.5])
+    """
+    local = points - points[0]
+    following = np.roll(local, -1, axis=0)
+    cross = local[:, 0] * following[:, 1] - local[:, 1] * following[:, 0]
+    total = cross.sum()
+    if total == 0.0:
+        return np.asarray(points.mean(axis=0))
+    moments: FloatArray = ((local + following) * cross[:, None]).sum(axis=0) / (3.0 * total)
+    centroid: FloatArray = points[0] + moments
+    return centroid

@@ -1,0 +1,126 @@
+"""Corners followed from section to section, so that each becomes one column of the loft."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stackloft.model.arrays import FloatArray
+
+REACH = 0.07
+"""Corners of neighbouring sections belong together when closer than this fraction of the loop."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CornerChain:
+    """One corner through a run of sections."""
+
+    at: dict[int, float]
+    """Section number to the corner's place, a fraction of the loop from the seam, not wrapped."""
+
+    @property
+    def mean(self) -> float:
+        """Mean place as a fraction of the loop in [0, 1)."""
+        return float(np.mean(list(self.at.values()))) % 1.0
+
+
+def follow_corners(corners: list[FloatArray], most: int) -> list[CornerChain]:
+    """Return the corner chains of a stack in order round the loop.
+
+    Parameters
+    ----------
+    corners : list of (c_i,) arrays
+        Corner places of each section as fractions of the loop from its seam, in [0, 1).
+    most : int
+        Largest number of chains wanted; the longest are kept.
+
+    Returns
+    -------
+    list of CornerChain
+        A corner that shows on one section alone (of three or more) is taken for noise. Chains that
+        would cross are cut to the longer one.
+    """
+    chains: list[dict[int, float]] = []
+    active: list[dict[int, float]] = []
+    for section, marks in enumerate(corners):
+        active = _extend(active, section, marks, chains)
+    least = min(2, len(corners))
+    long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least]
+    longest = sorted(long_enough, key=lambda chain: (-len(chain.at), chain.mean))[:most]
+    return _uncrossed(longest)
+
+
+def _extend(
+    active: list[dict[int, float]], section: int, marks: FloatArray, chains: list[dict[int, float]]
+) -> list[dict[int, float]]:
+    """Append the section's corners to the nearest active chains, or begin new ones."""
+    taken: set[int] = set()
+    following: list[dict[int, float]] = []
+    for mark in marks:
+        away = [abs(_wrapped(mark - chain[section - 1])) for chain in active]
+        order = [k for k in np.argsort(away) if k not in taken and away[k] < REACH]
+        if order:
+            chain = active[order[0]]
+            taken.add(int(order[0]))
+            before = chain[section - 1]
+            chain[section] = before + _wrapped(mark - before)
+        else:
+            chain = {section: float(mark)}
+            chains.append(chain)
+        following.append(chain)
+    return following
+
+
+def _wrapped(difference: float) -> float:
+    """Return a difference of fractions in [-½, ½)."""
+    return float((difference + 0.5) % 1.0 - 0.5)
+
+
+def _uncrossed(chains: list[CornerChain]) -> list[CornerChain]:
+    """Return the chains, longest first to stay, that keep one cyclic order in all sections."""
+    kept: list[CornerChain] = []
+    for chain in chains:
+        trial = sorted([*kept, chain], key=lambda c: c.mean)
+        if all(_in_order(trial, section) for section in chain.at):
+            kept = trial
+    return kept
+
+
+def _in_order(chains: list[CornerChain], section: int) -> bool:
+    """Return whether the chains' places at a section increase over less than one turn."""
+    places = [place_at(chain, section) for chain in chains]
+    gaps = [(b - a) % 1.0 for a, b in zip(places, [*places[1:], places[0]], strict=True)]
+    return len(chains) == 1 or (min(gaps) > 1e-6 and abs(sum(gaps) - 1.0) < 1e-6)
+
+
+def place_at(chain: CornerChain, section: int) -> float:
+    """Return the chain's place at any section: between and beyond its own by interpolation."""
+    known = sorted(chain.at)
+    return float(np.interp(section, known, [chain.at[k] for k in known]))
+
+
+def share_points(chains: list[CornerChain], count: int) -> list[int]:
+    """Return how many of `count` points each stretch from one chain to the next receives.
+
+    Every stretch gets at least one; the rest in proportion to its length (largest remainders; lengths
+    equal within 1e-6 are served in order, so that rounding decides nothing).
+
+    Examples
+    --------
+    >>> share_points([CornerChain({0: q / 4}) for q in range(4)], 33)
+    [9, 8, 8, 8]
+    """
+    places = [chain.mean for chain in chains]
+    gaps = np.array([(b - a) % 1.0 or 1.0 for a, b in zip(places, [*places[1:], places[0]], strict=True)])
+    ideal = np.maximum(gaps / gaps.sum() * count, 1.0)
+    shares = np.floor(ideal + 1e-6).astype(int)
+    order = sorted(range(len(gaps)), key=lambda k: (-round(float(ideal[k] - shares[k]), 6), k))
+    for k in order * (count // len(gaps) + 1):
+        if shares.sum() == count:
+            break
+        if shares.sum() < count:
+            shares[k] += 1
+        elif shares[k] > 1:
+            shares[k] -= 1
+    return [int(share) for share in shares]

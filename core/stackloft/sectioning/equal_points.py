@@ -1,0 +1,173 @@
+"""From loops to sections with equally many corresponding points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stackloft.geometry.correspondence import slide_points
+from stackloft.geometry.curve_stack import CurveStack, fit_curves
+from stackloft.geometry.seams import solve_phases
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
+from stackloft.sectioning.corner_columns import CornerChain, follow_corners, place_at, share_points
+from stackloft.sectioning.smoothing import smooth_loop
+
+SAMPLES = 128
+"""Samples of a loop when phases are compared."""
+MOST_SOLVED = 64
+"""Correspondence is solved for at most this many points; more are placed between."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EqualSections:
+    """Sections as corresponding points."""
+
+    points: FloatArray
+    """(m, N, 3) mm in stack coordinates; N points counter-clockwise, corresponding along axis 0."""
+    corners: BoolArray
+    """(m, N): where the boundary really turns."""
+    curves: CurveStack
+    """The curves the points were taken from."""
+    notices: tuple[Notice, ...]
+
+
+def equal_points(contours: ContourStack, count: int) -> EqualSections:
+    """Return `count` corresponding points on every section's one outer loop.
+
+    Parameters
+    ----------
+    contours : ContourStack
+        At least two sections, one outer loop each.
+    count : int
+        N, points per loop, corners among them.
+
+    Raises
+    ------
+    InputError
+        Fewer than two sections; no loop, several loops or holes on a section; a loop without area.
+    """
+    loops = [_single_loop(section) for section in contours.sections]
+    if len(loops) < 2:
+        raise InputError(
+            "a solid needs at least 2 sections", where=contours.sections[0].name if loops else None,
+            found=str(len(loops)), fix="give the whole stack, not one slice",
+        )  # fmt: skip
+    ready = [
+        _ready(loop, contours, section.name) for loop, section in zip(loops, contours.sections, strict=True)
+    ]
+    curves = fit_curves([loop.points for loop in ready], [loop.corners for loop in ready])
+    z = contours.positions
+    phases, marks, notices = _solve_seams(curves, ready, contours)
+    chains = follow_corners(marks, most=count // 2)
+    fractions, fixed = _first_guess(chains, count, len(ready))
+    fractions += phases[:, None]
+    solved = _slide(curves, z, fractions, fixed)
+    plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
+    height = np.broadcast_to(z[:, None, None], (*plane.shape[:2], 1))
+    return EqualSections(np.concatenate([plane, height], axis=2), fixed, curves, notices)
+
+
+def _single_loop(section: Section) -> Loop:
+    """Return the section's one outer loop, or refuse."""
+    outer = [loop for loop in section.loops if not loop.hole]
+    holes = len(section.loops) - len(outer)
+    if len(outer) == 1 and holes == 0:
+        return outer[0]
+    found = f"{len(outer)} outer loops, {holes} holes" if outer else "no loop"
+    raise InputError(
+        "this method lofts one closed outer loop per section",
+        where=section.name,
+        found=found,
+        expected="1 outer loop, no hole",
+        fix="leave out sections without the body; holes and branches cannot be lofted yet: try"
+        " --method cavalieri for the volume alone",
+    )
+
+
+def _ready(loop: Loop, contours: ContourStack, name: str) -> Loop:
+    """Return the loop counter-clockwise, without repeated points, smoothed when it was traced."""
+    if not contours.exact:
+        loop = smooth_loop(loop, contours.resolution)
+    points = np.asarray(loop.points)
+    size = np.ptp(points, axis=0).max()
+    step = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1)
+    keep = step > 1e-9 * size
+    corners = (np.cumsum(keep) - 1)[loop.corners]
+    points = points[keep]
+    if len(points) < 3 or abs(Loop(points).signed_area) < 1e-12 * size**2:
+        raise InputError("a loop without area", where=name, found=f"{len(points)} distinct points")
+    if Loop(points).signed_area < 0.0:
+        points = points[::-1]
+        corners = np.sort(len(points) - 1 - corners)
+    return Loop(points, corners)
+
+
+def _solve_seams(
+    curves: CurveStack, loops: list[Loop], contours: ContourStack
+) -> tuple[FloatArray, list[FloatArray], tuple[Notice, ...]]:
+    """Return each section's phase, its corners counted from there, and notices of near ties."""
+    section = np.arange(len(curves))
+    samples = np.arange(SAMPLES) / SAMPLES
+    point, tangent = curves.at(section[:, None], samples[None, :])
+    places = [_corner_places(curves, k, loop.corners) for k, loop in enumerate(loops)]
+    seams = solve_phases(point - curves.centroids[:, None, :], tangent, places)
+    largest = int(np.argmax(np.round(curves.areas, 9)))
+    phases = seams.phases - seams.phases[largest]
+    marks = [np.sort(np.mod(p - phase, 1.0)) for p, phase in zip(places, phases, strict=True)]
+    names = [s.name for s in contours.sections]
+    return phases, marks, tuple(_tie_notice(names[k], names[k + 1]) for k in seams.tied)
+
+
+def _tie_notice(before: str, after: str) -> Notice:
+    return Notice(
+        "seam-ambiguous",
+        f"{after}: two ways of turning it against {before} fit almost equally well; the one that continues"
+        " the twist so far was taken: cut thinner slices if the body twists",
+    )
+
+
+def _corner_places(curves: CurveStack, section: int, corners: IntArray) -> FloatArray:
+    """Return the corners' places as fractions of the loop from the canonical start."""
+    if len(corners) == 0:
+        return np.empty(0)
+    knots = curves.knots[curves.first[section] + corners] - section
+    return np.sort(np.mod(knots - curves.starts[section], 1.0))
+
+
+def _first_guess(chains: list[CornerChain], count: int, sections: int) -> tuple[FloatArray, BoolArray]:
+    """Return fractions (m, N) even between corners, and which points are corners."""
+    fixed = np.zeros((sections, count), dtype=bool)
+    if not chains:
+        return np.tile(np.arange(count) / count, (sections, 1)), fixed
+    shares = share_points(chains, count)
+    first = np.concatenate([[0], np.cumsum(shares)])
+    fractions = np.empty((sections, count))
+    for section in range(sections):
+        places = np.array([place_at(chain, section) for chain in chains])
+        turns = np.concatenate([places, places[:1] + 1.0])
+        turns[1:] = turns[0] + np.cumsum(np.mod(np.diff(turns), 1.0)) if len(chains) > 1 else turns[1:]
+        for k, share in enumerate(shares):
+            stretch = turns[k] + (turns[k + 1] - turns[k]) * np.arange(share) / share
+            fractions[section, first[k] : first[k + 1]] = stretch
+            fixed[section, first[k]] = section in chains[k].at
+    return fractions, fixed
+
+
+def _slide(curves: CurveStack, z: FloatArray, fractions: FloatArray, fixed: BoolArray) -> FloatArray:
+    """Return the solved fractions; above MOST_SOLVED points every k-th is solved, the rest follow."""
+    count = fractions.shape[1]
+    stride = -(-count // MOST_SOLVED)
+    if stride == 1:
+        return slide_points(curves, z, fractions, fixed)
+    chosen = np.flatnonzero((np.arange(count) % stride == 0) | fixed.any(axis=0))
+    solved = slide_points(curves, z, fractions[:, chosen], fixed[:, chosen])
+    shift = solved - fractions[:, chosen]
+    wrapped = np.concatenate([chosen, [chosen[0] + count]])
+    closed = np.concatenate([shift, shift[:, :1]], axis=1)
+    index = np.where(np.arange(count) < chosen[0], np.arange(count) + count, np.arange(count))
+    spread: FloatArray = np.stack([np.interp(index, wrapped, row) for row in closed])
+    return fractions + spread
