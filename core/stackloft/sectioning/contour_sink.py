@@ -1,0 +1,160 @@
+"""One decoding pass over a stack: every slice's loops, gathered into a `ContourStack`."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+from stackloft.contracts.sink import Sink
+from stackloft.model.contour_stack import ContourStack, Section
+from stackloft.model.notices import Notice
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture
+from stackloft.sectioning.tracing import TraceRules, trace_field
+
+THREADS = 2
+"""Threads that decode and segment."""
+
+AHEAD = 2
+"""Slices decoded before they are asked for; with the one in hand, the pictures in memory."""
+
+_NAMED = 3  # slices named in a notice that stands for several
+
+
+class ContourSink:
+    """Traces each slice as it comes by; ends with the stack of sections.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from stackloft.model.slice_stack import SectionKind, SliceStack
+    >>> picture = np.full((30, 30), 20.0)
+    >>> picture[10:20, 10:20] = 100.0
+    >>> stack = SliceStack(lambda k: picture, ("a", "b"), (30, 30), np.array([0.0, 5.0]),
+    ...                    np.full((2, 2), 0.5), SectionKind.FACE)
+    >>> contours = trace_stack(Segmentation(stack, lambda k, picture: SectionField(picture, 60.0)))
+    >>> len(contours), contours.resolution
+    (2, 0.5)
+    """
+
+    def __init__(self, rules: TraceRules | None = None) -> None:
+        self._rules = rules or TraceRules()
+        self._segmentation: Segmentation | None = None
+        self._sections: list[Section] = []
+        self._notices: list[Notice] = []
+
+    def begin(self, segmentation: Segmentation) -> None:
+        """Get ready for the slices of `segmentation`."""
+        self._segmentation = segmentation
+        self._sections, self._notices = [], []
+
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
+        """Trace slice `index`.
+
+        Raises
+        ------
+        InputError
+            There is no body on it.
+        """
+        stack = self._begun.stack
+        row, column = (float(step) for step in stack.pixel_spacing[index])
+        name = stack.names[index]
+        traced = trace_field(section_field, (row, column), stack.shape, name, self._rules)
+        self._sections.append(Section(float(stack.positions[index]), traced.loops, name))
+        self._notices += [*section_field.notices, *traced.notices]
+
+    def end(self) -> ContourStack:
+        """Return the sections, with what the stack said and what was noticed on the way."""
+        segmentation = self._begun
+        stack = segmentation.stack
+        return ContourStack(
+            sections=tuple(self._sections),
+            kind=stack.kind,
+            exact=False,
+            resolution=float(stack.pixel_spacing.max()),
+            thickness=None if stack.thickness is None else float(stack.thickness.mean()),
+            affine=stack.affine,
+            hints=stack.hints,
+            notices=(*stack.notices, *segmentation.notices, *gathered(self._notices)),
+            provenance=stack.provenance,
+        )
+
+    @property
+    def _begun(self) -> Segmentation:
+        if self._segmentation is None:
+            message = "begin() comes first"
+            raise RuntimeError(message)
+        return self._segmentation
+
+
+def trace_stack(segmentation: Segmentation, rules: TraceRules | None = None) -> ContourStack:
+    """Return the sections of a segmented stack, decoding each slice once.
+
+    Raises
+    ------
+    InputError
+        A slice cannot be decoded, or shows no body.
+    """
+    (contours,) = feed(segmentation, [ContourSink(rules)])
+    if not isinstance(contours, ContourStack):  # a sink's product is of any type
+        raise TypeError(type(contours).__name__)
+    return contours
+
+
+def feed(segmentation: Segmentation, sinks: Sequence[Sink]) -> list[Any]:
+    """Decode a stack once, give every slice to every sink in order, and return their products."""
+    for sink in sinks:
+        sink.begin(segmentation)
+    for index, picture, section in decoded_ahead(segmentation):
+        for sink in sinks:
+            sink.add(index, picture, section)
+    return [sink.end() for sink in sinks]
+
+
+def decoded_ahead(segmentation: Segmentation) -> Iterator[tuple[int, Picture, SectionField]]:
+    """Yield slice number, picture and field in order, decoding and segmenting a little ahead.
+
+    Two threads work at most `AHEAD` slices ahead of the one in hand. Closing the iterator, or an
+    error in a slice, ends the work on those not begun.
+    """
+
+    def work(index: int) -> tuple[int, Picture, SectionField]:
+        picture = segmentation.stack.decode(index)
+        return index, picture, segmentation.field_of(index, picture)
+
+    pool = ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-decode")
+    waiting: deque[Future[tuple[int, Picture, SectionField]]] = deque()
+    try:
+        for index in range(len(segmentation)):
+            waiting.append(pool.submit(work, index))
+            if len(waiting) > AHEAD:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:
+    """Return one notice for each code: the first slice's words, and how many others it is about.
+
+    Examples
+    --------
+    >>> gathered([Notice("low-contrast", "a: faint"), Notice("low-contrast", "b: faint")])[0].message
+    'a: faint (and 1 more: b)'
+    """
+    groups: dict[str, list[Notice]] = {}
+    for notice in notices:
+        groups.setdefault(notice.code, []).append(notice)
+    return tuple(_merged(group) for group in groups.values())
+
+
+def _merged(group: list[Notice]) -> Notice:
+    first, *others = group
+    if not others:
+        return first
+    names = [other.message.partition(": ")[0] for other in others]
+    more = ", …" if len(names) > _NAMED else ""
+    return Notice(first.code, f"{first.message} (and {len(names)} more: {', '.join(names[:_NAMED])}{more})")

@@ -1,0 +1,101 @@
+r"""Where between two pixels the boundary lies, exactly so for straight edges.
+
+::
+
+     field  a     b        c     d
+            o-----o---*----o-----o      the edge crosses between b and c
+            |-----window---|            its mean over three pixels, S0 = (a + b + c) / 3,
+                  |-----window---|      and S1 = (b + c + d) / 3, one pixel on
+
+A pixel holds the mean grey level over its own square, so the sum of the levels along a line across an
+edge is the length of the line that lies in the body (the partial-area effect: Trujillo-Pino, Krissian,
+Alemán-Flores & Santana-Cedrés 2013, doi:10.1016/j.imavis.2012.10.005). Interpolating the three-pixel
+means linearly reads that length off: for every straight edge no steeper than 45° to the line the
+result is exact, whereas linear interpolation of the pixels themselves errs by up to 0.09 px. Any
+symmetric blur leaves it within a few thousandths of a pixel.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.arrays import FloatArray
+from stackloft.sectioning.marching_squares import Crossings
+
+REACH = 2
+"""Pixels beyond the crossed edge that are looked at: the field must have that much of a border."""
+
+_BEYOND = 0.25  # how far past the two pixels the refined crossing may lie
+_DOMINANCE = 0.8
+_FEWEST = 16  # crossings below which a line is too small to be refined
+
+
+def crossing_points(line: Crossings, field: FloatArray) -> FloatArray:
+    """Return the points of a closed line at which `field` is zero.
+
+    Only crossings of edges that run across the boundary rather than along it are kept, about one for
+    each pixel of its length, because the others are ill-conditioned.
+
+    Parameters
+    ----------
+    line : Crossings
+        From `closed_lines`.
+    field : ndarray, (rows, columns)
+        Zero on the boundary; the line keeps `REACH` pixels from its border.
+
+    Returns
+    -------
+    ndarray, (k, 2)
+        (column, row), sub-pixel.
+
+    Examples
+    --------
+    >>> from stackloft.sectioning.marching_squares import closed_lines
+    >>> field = np.full((30, 30), -1.0)
+    >>> field[8:20, 8:20] = 1.0
+    >>> field[8:20, 20] = -0.4                      # covered by 0.3: the edge lies at 19.8
+    >>> points = crossing_points(closed_lines(field > 0, field)[0], field)
+    >>> round(float(points[:, 0].max()), 12)
+    19.8
+    """
+    along = np.where(line.down, field.shape[1], 1)
+    across = np.where(line.down, 1, field.shape[1])
+    base = line.row * field.shape[1] + line.column
+    flat = field.ravel()
+    samples = [flat[base + step * along] for step in (-1, 0, 1, 2)]
+    fraction = samples[1] / (samples[1] - samples[2])
+    if len(base) >= _FEWEST:
+        keep = _runs_across(flat, base, along, across)
+        fraction = np.where(keep, _refined(samples, fraction), fraction)
+        if keep.sum() >= _FEWEST // 2:
+            line = Crossings(line.row[keep], line.column[keep], line.down[keep])
+            fraction = fraction[keep]
+    x = line.column + np.where(line.down, 0.0, fraction)
+    y = line.row + np.where(line.down, fraction, 0.0)
+    return np.column_stack([x, y])
+
+
+def _refined(samples: list[FloatArray], plain: FloatArray) -> FloatArray:
+    """Return the crossing of the three-pixel means, or the plain one where the step is not clean."""
+    a, b, c, d = samples
+    clean = (a * b > 0) & (c * d > 0)
+    refined = np.divide(a + b + c, a - d, out=plain.copy(), where=clean)
+    near = (refined >= -_BEYOND) & (refined <= 1 + _BEYOND)
+    return np.where(near, refined, plain)
+
+
+def _runs_across(
+    flat: FloatArray, base: NDArray[np.int64], along: NDArray[np.int64], across: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Return whether the field changes faster along the crossed edge than across it.
+
+    Slopes of the plane fitted to the 4 × 3 pixels around the edge by least squares.
+    """
+    steep = np.zeros(len(base))
+    flank = np.zeros(len(base))
+    for step, lever in zip((-1, 0, 1, 2), (-1.5, -0.5, 0.5, 1.5), strict=True):
+        rows = [flat[base + step * along + side * across] for side in (-1, 0, 1)]
+        steep += lever * (rows[0] + rows[1] + rows[2]) / 15.0
+        flank += (rows[2] - rows[0]) / 8.0
+    return np.asarray(np.abs(steep) >= _DOMINANCE * np.abs(flank))

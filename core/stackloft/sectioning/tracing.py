@@ -1,0 +1,202 @@
+"""From a slice's field to its closed loops, in millimetres.
+
+Lines are followed between the pixels (`marching_squares`), put where the boundary is to a hundredth
+of a pixel (`sub_pixel`), and sorted: debris is dropped, glare and seeds are filled, and what matters
+is said in a notice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from stackloft.model.arrays import FloatArray, frozen_floats
+from stackloft.model.contour_stack import Loop
+from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
+from stackloft.model.segmentation import SectionField
+from stackloft.sectioning.marching_squares import Crossings, closed_lines
+from stackloft.sectioning.nesting import inside_polygon
+from stackloft.sectioning.sub_pixel import REACH, crossing_points
+
+
+@dataclass(frozen=True, slots=True)
+class TraceRules:
+    """What is kept of a slice. Fractions are of the area of its largest object."""
+
+    debris: float = 0.02
+    """Other objects below this are dropped without a word (crumbs, drops, dust)."""
+    branch: float = 0.20
+    """Other objects above this are kept as outlines of their own: the body branches there."""
+    hole: float = 0.02
+    """Holes below this are filled (glare, seeds)."""
+    unnoticed_hole: float = 0.001
+    """Filled holes below this together are not worth a notice."""
+    fewest_pixels: float = 9.0
+    """px²: an object smaller than this is no body."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TracedLoops:
+    """The loops of one slice and what a person should know about them."""
+
+    loops: tuple[Loop, ...]
+    """Outlines with positive, holes with negative signed area; the largest outline first."""
+    notices: tuple[Notice, ...] = ()
+
+
+def trace_field(
+    section: SectionField,
+    spacing: tuple[float, float],
+    shape: tuple[int, int],
+    name: str,
+    rules: TraceRules | None = None,
+) -> TracedLoops:
+    """Return the loops on which a slice's field equals its level.
+
+    Parameters
+    ----------
+    section : SectionField
+        Body above the level.
+    spacing : tuple of float
+        (row, column) spacing, mm.
+    shape : tuple of int
+        (rows, columns) of the whole slice, to tell its border from that of the crop.
+    name : str
+        File or slice label, for messages.
+    rules : TraceRules, optional
+        What is debris, branch and hole.
+
+    Returns
+    -------
+    TracedLoops
+        Vertices (x, y) = (column·column spacing, row·row spacing) mm, about one per pixel; pixel (0, 0)'s
+        centre is the origin.
+
+    Raises
+    ------
+    InputError
+        Nothing in the slice is above the level.
+
+    Examples
+    --------
+    >>> values = np.full((40, 40), 20.0)
+    >>> values[10:30, 10:30] = 100.0
+    >>> loop = trace_field(SectionField(values, 60.0), (0.5, 0.5), (40, 40), "a").loops[0]
+    >>> round(loop.signed_area, 1)                  # the corners are rounded off by the pixels
+    99.9
+    """
+    rules = rules or TraceRules()
+    field = _bordered(section)
+    lines = [_Line(crossings) for crossings in closed_lines(field > 0, field)]
+    kept, dropped = _objects(lines, rules, name)
+    real, filled = _holes(kept, lines, rules)
+    shift = np.array(section.offset, dtype=np.float64) - REACH
+    loops = tuple(_loop(line, field, shift, spacing) for line in (*kept, *real))
+    notices = (
+        *_dropped_notice(dropped, kept[0].area, name),
+        *_filled_notice(filled, kept[0].area, rules, name),
+        *_border_notice(section, shape, name),
+    )
+    return TracedLoops(loops, notices)
+
+
+class _Line:
+    """A closed line and its rough area in pixels, negative for a hole."""
+
+    __slots__ = ("area", "crossings", "rough")
+
+    def __init__(self, crossings: Crossings) -> None:
+        self.crossings = crossings
+        x = crossings.column + np.where(crossings.down, 0.0, 0.5)
+        y = crossings.row + np.where(crossings.down, 0.5, 0.0)
+        self.rough: FloatArray = np.column_stack([x, y])
+        self.area = Loop(self.rough).signed_area
+
+
+def _bordered(section: SectionField) -> FloatArray:
+    """Return the field above its level inside a border that no body reaches.
+
+    The border mirrors the outermost pixels' values to the other side of the level, so that a body cut by
+    the picture's edge is closed on that edge.
+    """
+    level = section.level if section.local_levels is None else section.local_levels
+    field: FloatArray = np.pad(section.values - level, REACH, mode="edge")
+    for edge in (field[:REACH], field[-REACH:], field[:, :REACH], field[:, -REACH:]):
+        np.copyto(edge, -np.abs(edge))
+    return field
+
+
+def _objects(lines: list[_Line], rules: TraceRules, name: str) -> tuple[list[_Line], list[_Line]]:
+    """Return the outlines that are kept, largest first, and those whose loss deserves a notice."""
+    outlines = sorted((line for line in lines if line.area > 0), key=lambda line: -line.area)
+    largest = outlines[0].area if outlines else 0.0
+    if largest < rules.fewest_pixels:
+        raise InputError(
+            "no body found",
+            where=name,
+            found=f"nothing larger than {largest:.0f} pixels",
+            fix="give --set segmenter.threshold=LEVEL, or set skip = true for it in stack.toml",
+        )
+    kept = [line for line in outlines if line.area >= rules.branch * largest]
+    return kept, [line for line in outlines if rules.debris * largest <= line.area < rules.branch * largest]
+
+
+def _holes(kept: list[_Line], lines: list[_Line], rules: TraceRules) -> tuple[list[_Line], list[_Line]]:
+    """Return the holes of the kept outlines: the real ones, and those to be filled."""
+    holes = [line for line in lines if line.area < 0]
+    if not holes:
+        return [], []
+    starts = np.array([hole.rough[0] for hole in holes])
+    within = np.any([inside_polygon(starts, outline.rough) for outline in kept], axis=0)
+    own = [hole for hole, ours in zip(holes, within, strict=True) if ours]
+    least = rules.hole * kept[0].area
+    return [hole for hole in own if -hole.area >= least], [hole for hole in own if -hole.area < least]
+
+
+def _loop(line: _Line, field: FloatArray, shift: FloatArray, spacing: tuple[float, float]) -> Loop:
+    """Return the line as a loop in mm; `shift` is (row, column) of the field's first pixel in the slice."""
+    pixels = crossing_points(line.crossings, field) + shift[::-1]
+    points = pixels * np.array(spacing)[::-1]
+    apart = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1) > 1e-9 * max(spacing)
+    return Loop(frozen_floats(points[apart]), hole=line.area < 0)
+
+
+def _dropped_notice(dropped: list[_Line], largest: float, name: str) -> Iterator[Notice]:
+    if dropped:
+        share = 100 * dropped[0].area / largest
+        yield Notice(
+            "second-object",
+            f"{name}: left out a second object of {share:.1f} % of the body's area; "
+            "move it out of the picture, or give a mask in stack.toml if it belongs to the body",
+        )
+
+
+def _filled_notice(filled: list[_Line], largest: float, rules: TraceRules, name: str) -> Iterator[Notice]:
+    share = -sum(hole.area for hole in filled) / largest
+    if share >= rules.unnoticed_hole:
+        yield Notice(
+            "hole-filled",
+            f"{name}: filled holes of {100 * share:.2g} % of the body's area, taken for glare or seeds",
+        )
+
+
+def _border_notice(section: SectionField, shape: tuple[int, int], name: str) -> Iterator[Notice]:
+    level = section.level if section.local_levels is None else section.local_levels
+    inside = section.values > level
+    (top, left), (rows, columns) = section.offset, inside.shape
+    sides = {
+        "top": top == 0 and inside[0].any(),
+        "bottom": top + rows == shape[0] and inside[-1].any(),
+        "left": left == 0 and inside[:, 0].any(),
+        "right": left + columns == shape[1] and inside[:, -1].any(),
+    }
+    touched = [side for side, touches in sides.items() if touches]
+    if touched:
+        yield Notice(
+            "border-contact",
+            f"{name}: the body touches the picture's {' and '.join(touched)} edge and is cut off there; "
+            "photograph it whole",
+        )

@@ -1,0 +1,92 @@
+"""Body and background told apart by grey level.
+
+Grey → 3×3 median → threshold, as Goñi, Purlis & Salvadori (2007) do it; the grey levels are kept, so
+that the boundary is found between the pixels. The default level is half-way between the body's edge
+and the background beside it; the textbook thresholds can be chosen instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from stackloft.contracts.options import option
+from stackloft.model.errors import UsageError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft_plugins.segmenters.grey import CHANNELS
+from stackloft_plugins.segmenters.histogram_levels import METHODS
+from stackloft_plugins.segmenters.slice_field import LevelRules, mask_field, slice_field
+
+
+@dataclass(frozen=True, slots=True)
+class HistogramSegmenter:
+    """Segments by a grey-level threshold.
+
+    Light or dark background is found from the picture's frame unless ``background`` in ``stack.toml``
+    tells. ``[slice.N] threshold`` and ``mask`` there win over the options.
+
+    Examples
+    --------
+    >>> from stackloft.model.slice_stack import SectionKind
+    >>> plate = np.full((60, 80), 240, dtype=np.uint8)
+    >>> plate[20:40, 20:60] = 90
+    >>> stack = SliceStack(lambda k: plate, ("a", "b"), (60, 80), np.array([0.0, 5.0]),
+    ...                    np.full((2, 2), 0.3), SectionKind.FACE)
+    >>> HistogramSegmenter().segment(stack).field_of(0, plate).threshold
+    165.0
+    """
+
+    api: ClassVar[str] = "1"
+    accepts: ClassVar[tuple[type, ...]] = (SliceStack,)
+    produces: ClassVar[tuple[type, ...]] = (Segmentation,)
+
+    method: str = option(
+        "half-way",
+        "how the threshold is found",
+        choices=("half-way", *METHODS, "manual"),
+        source="module text",
+    )
+    threshold: float | None = option(None, "grey level of the boundary; given, no other is sought")
+    scope: str = option(
+        "slice", "a threshold for each slice, or their median for the stack", choices=("slice", "stack")
+    )
+    channel: str = option("luminance", "what grey is made of", choices=tuple(CHANNELS))
+
+    def segment(self, stack: SliceStack) -> Segmentation:
+        """Return the segmentation; slices are decoded here only when one threshold serves all.
+
+        Raises
+        ------
+        UsageError
+            Method ``manual`` without a threshold.
+        """
+        if self.method == "manual" and self.threshold is None:
+            raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
+        threshold = self.threshold
+        if self.scope == "stack" and threshold is None:
+            threshold = self._median_threshold(stack)
+
+        def field_of(number: int, picture: Picture) -> SectionField:
+            return self._field(stack, number, picture, threshold)
+
+        return Segmentation(stack, field_of)
+
+    def _median_threshold(self, stack: SliceStack) -> float:
+        levels = [self._field(stack, k, stack.decode(k), None).threshold for k in range(len(stack))]
+        return float(np.median(levels))
+
+    def _field(
+        self, stack: SliceStack, number: int, picture: Picture, threshold: float | None
+    ) -> SectionField:
+        said: Mapping[str, Any] = stack.hints.slices.get(number + 1, {})
+        name = stack.names[number]
+        if "mask" in said:
+            return mask_field(said["mask"], stack.shape, name)
+        level = said.get("threshold", threshold)
+        return slice_field(
+            picture, LevelRules(self.method, level, self.channel, stack.hints.background), name
+        )

@@ -1,0 +1,154 @@
+"""One slice's field: where the body is looked for, at which level, and what a person should know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from stackloft.model.arrays import read_only
+from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
+from stackloft.model.segmentation import SectionField
+from stackloft.model.slice_stack import Picture
+from stackloft_plugins.segmenters.body_window import background_of, body_window, coarse_step
+from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
+from stackloft_plugins.segmenters.half_way import Edge, edge_at, half_way_edge
+from stackloft_plugins.segmenters.histogram_levels import histogram_level
+
+_NO_STEP = 4.0  # a boundary whose step is below this many standard deviations of noise is none
+_FAINT = 10.0
+_NO_STEP_OF_SCALE = 0.015  # likewise, as a fraction of the picture's full scale
+_FAINT_OF_SCALE = 0.10
+
+_REPAIR = "give [slice.N] threshold or mask in stack.toml, or set skip = true there"
+
+
+@dataclass(frozen=True, slots=True)
+class LevelRules:
+    """How the level of a slice is found."""
+
+    method: str = "half-way"
+    threshold: float | None = None
+    """Given: no other is sought."""
+    channel: str = "luminance"
+    background: str | None = None
+    """``light`` or ``dark``; None: found from the frame."""
+
+
+def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
+    """Return the field of one slice, cropped to the body and a margin.
+
+    Raises
+    ------
+    InputError
+        There is no body in the picture `name`.
+
+    Examples
+    --------
+    >>> plate = np.full((60, 80), 240, dtype=np.uint8)
+    >>> plate[20:40, 20:60] = 90
+    >>> field = slice_field(plate, LevelRules(), "a.png")
+    >>> field.offset, field.values.shape, field.threshold
+    ((7, 7), (46, 66), 165.0)
+    """
+    step = coarse_step(picture.shape)
+    coarse = median_filtered(grey_levels(picture[::step, ::step], rules.channel))
+    first = _first_level(picture, coarse, rules, name)
+    background = background_of(coarse, first)
+    sign = 1.0 if (background.dark if rules.background is None else rules.background == "dark") else -1.0
+    seen = (sign * coarse > sign * first).astype(np.uint8)
+    window = body_window(seen, step, picture.shape[:2])
+    if window is None:
+        raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
+    grey: Grey = sign * median_filtered(grey_levels(picture[window], rules.channel))
+    edge = _edge(grey, sign * first, rules, name)
+    level = edge.level if rules.threshold is None and rules.method == "half-way" else sign * first
+    notices = list(_contrast_notices(edge, _full_scale(picture, coarse), name))
+    if rules.background is None and not background.sure:
+        notices.append(_unsure(name))
+    return SectionField(
+        values=read_only(grey.astype(np.float64)),
+        level=level,
+        offset=(window[0].start, window[1].start),
+        threshold=sign * level,
+        notices=tuple(notices),
+    )
+
+
+def mask_field(path: Path, shape: tuple[int, int], name: str) -> SectionField:
+    """Return the field of a slice whose body a person has drawn white on black.
+
+    Raises
+    ------
+    InputError
+        The mask is missing, damaged, of another size, or of one colour only.
+    """
+    try:
+        encoded = np.fromfile(path, dtype=np.uint8)
+    except OSError as error:
+        raise InputError(f"the mask of {name} cannot be opened", where=str(path), found=str(error)) from error
+    mask = cv2.imdecode(encoded, cv2.IMREAD_GRAYSCALE) if encoded.size else None
+    if mask is None:
+        raise InputError(f"the mask of {name} is no picture", where=str(path), fix="save it as PNG")
+    if mask.shape != shape:
+        raise InputError(
+            f"the mask of {name} has another size",
+            where=str(path),
+            found=f"{mask.shape[1]} × {mask.shape[0]} pixels",
+            expected=f"{shape[1]} × {shape[0]}",
+        )
+    if mask.min() == mask.max():
+        raise InputError(
+            f"the mask of {name} is of one colour", where=str(path), expected="body white, rest black"
+        )
+    level = 0.5 * (float(mask.min()) + float(mask.max()))
+    return SectionField(read_only(mask.astype(np.float64)), level, threshold=level)
+
+
+def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -> float:
+    if rules.threshold is not None:
+        return rules.threshold
+    if rules.method == "half-way":
+        return histogram_level(coarse, "otsu", name)
+    return histogram_level(median_filtered(grey_levels(picture, rules.channel)), rules.method, name)
+
+
+def _edge(grey: Grey, first: float, rules: LevelRules, name: str) -> Edge:
+    settled = rules.threshold is None and rules.method == "half-way"
+    edge = half_way_edge(grey, first) if settled else edge_at(grey, first)
+    if edge is None:
+        raise _no_body(name, "no boundary between a body and its background")
+    return edge
+
+
+def _full_scale(picture: Picture, coarse: Grey) -> float:
+    """Return 255 for 8-bit pictures; others seldom use all of their scale, so the range that occurs."""
+    return 255.0 if picture.dtype == np.uint8 else float(np.ptp(coarse))
+
+
+def _contrast_notices(edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
+    step, noise = edge.contrast, edge.noise
+    if step < max(_NO_STEP * noise, _NO_STEP_OF_SCALE * scale):
+        raise _no_body(name, f"a step of {step:.3g} grey levels at the boundary, noise {noise:.2g}")
+    if step >= max(_FAINT * noise, _FAINT_OF_SCALE * scale):
+        return ()
+    message = (
+        f"{name}: body and background differ by only {step:.3g} grey levels (noise {noise:.2g}); "
+        "look at its contour"
+    )
+    return (Notice("low-contrast", message),)
+
+
+def _no_body(name: str, found: str) -> InputError:
+    return InputError("no body found", where=name, found=found, fix=_REPAIR)
+
+
+def _unsure(name: str) -> Notice:
+    message = (
+        f"{name}: the picture's frame is partly light and partly dark, so which of them is background is "
+        'a guess; set background = "light" or "dark" in stack.toml'
+    )
+    return Notice("background-unsure", message)
