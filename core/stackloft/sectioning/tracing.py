@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from stackloft.model.arrays import FloatArray, frozen_floats
@@ -32,8 +33,11 @@ class TraceRules:
     """Other objects above this are kept as outlines of their own: the body branches there."""
     hole: float = 0.02
     """Holes below this are filled (glare, seeds)."""
+    background_like: float = 0.5
+    """A hole is real when it is at least this far from the level towards the background's grey: through a
+    real hole the plate is seen, whereas fat or bone may only be nearer to it than the rest."""
     unnoticed_hole: float = 0.001
-    """Filled holes below this together are not worth a notice."""
+    """Holes filled below this together are not worth a notice."""
     fewest_pixels: float = 9.0
     """px²: an object smaller than this is no body."""
 
@@ -92,7 +96,7 @@ def trace_field(
     field = _bordered(section)
     lines = [_Line(crossings) for crossings in closed_lines(field > 0, field)]
     kept, dropped = _objects(lines, rules, name)
-    real, filled = _holes(kept, lines, rules)
+    real, filled = _holes(kept, lines, field, rules)
     shift = np.array(section.offset, dtype=np.float64) - REACH
     loops = tuple(_loop(line, field, shift, spacing) for line in (*kept, *real))
     notices = (
@@ -144,16 +148,36 @@ def _objects(lines: list[_Line], rules: TraceRules, name: str) -> tuple[list[_Li
     return kept, [line for line in outlines if rules.debris * largest <= line.area < rules.branch * largest]
 
 
-def _holes(kept: list[_Line], lines: list[_Line], rules: TraceRules) -> tuple[list[_Line], list[_Line]]:
-    """Return the holes of the kept outlines: the real ones, and those to be filled."""
+def _holes(
+    kept: list[_Line], lines: list[_Line], field: FloatArray, rules: TraceRules
+) -> tuple[list[_Line], list[_Line]]:
+    """Return the holes of the kept outlines through which the background shows: real ones, filled ones."""
     holes = [line for line in lines if line.area < 0]
     if not holes:
         return [], []
     starts = np.array([hole.rough[0] for hole in holes])
     within = np.any([inside_polygon(starts, outline.rough) for outline in kept], axis=0)
     own = [hole for hole, ours in zip(holes, within, strict=True) if ours]
-    least = rules.hole * kept[0].area
-    return [hole for hole in own if -hole.area >= least], [hole for hole in own if -hole.area < least]
+    clear = rules.background_like * _background(field)
+    notable = [hole for hole in own if -hole.area >= 0.1 * rules.unnoticed_hole * kept[0].area]
+    through = [hole for hole in notable if _median_within(hole, field) <= clear]
+    real = [hole for hole in through if -hole.area >= rules.hole * kept[0].area]
+    return real, [hole for hole in through if hole not in real]
+
+
+def _background(field: FloatArray) -> float:
+    """Return the field's usual value along the frame of the crop, where it is background."""
+    frame = np.concatenate([field[0], field[-1], field[:, 0], field[:, -1]])
+    return float(np.median(frame))
+
+
+def _median_within(hole: _Line, field: FloatArray) -> float:
+    """Return the median of the field over the pixels of a hole."""
+    low, high = hole.rough.min(axis=0).astype(int), hole.rough.max(axis=0).astype(int) + 1
+    covered = np.zeros((high - low + 1)[::-1], dtype=np.uint8)
+    cv2.fillPoly(covered, [np.round(hole.rough - low).astype(np.int32)], 1)
+    window = field[low[1] : high[1] + 1, low[0] : high[0] + 1]
+    return float(np.median(window[(covered > 0) & (window <= 0)]))
 
 
 def _loop(line: _Line, field: FloatArray, shift: FloatArray, spacing: tuple[float, float]) -> Loop:
