@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from stackloft.model.errors import UsageError
+from stackloft.model.errors import PluginError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.pipeline.request import MeasureRequest
 from stackloft.registry import Loaded, catalogue, fields_of, nearest, validate
@@ -40,11 +40,18 @@ class Place:
 
 def options_at(place: Place, request: MeasureRequest) -> dict[str, Any]:
     """Return every option of the plug-in at `place`, validated (order as in `MeasureRequest`)."""
-    merged = _known(place, place.preset) if place.preset else {}
-    merged |= _addressed(place, request.base)
+    merged = _taken(place, place.preset) | _addressed(place, request.base)
     merged |= _taken(place, request.shared)
     merged |= _addressed(place, request.settings)
     return validate(place.loaded.plugin, merged, place.loaded.key)
+
+
+def check_preset(place: Place) -> None:
+    """Raise PluginError when a method itself sets an option that is unknown or not allowed."""
+    try:
+        validate(place.loaded.plugin, place.preset, place.loaded.key)
+    except UsageError as error:
+        raise PluginError(f"method {place.method} sets its own options wrongly", found=str(error)) from error
 
 
 def check_addresses(places: Iterable[Place], request: MeasureRequest) -> tuple[Notice, ...]:
@@ -107,15 +114,6 @@ def _taken(place: Place, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return those `options` that the plug-in has; `check_addresses` answers for the others."""
     spelt = {_spelt(name): value for name, value in options.items()}
     return {name: value for name, value in spelt.items() if name in place.names}
-
-
-def _known(place: Place, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a method's own `options`; an unknown one is the recipe's mistake."""
-    for name in options:
-        if _spelt(name) not in place.names:
-            message = f"method {place.method} sets {name!r}, which {place.loaded.key} does not have"
-            raise UsageError(message, fix=nearest(name, sorted(place.names)))
-    return _taken(place, options)
 
 
 def _spelt(name: str) -> str:

@@ -10,7 +10,7 @@ from stackloft.model.errors import PluginError, StackloftError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import SliceStack
 from stackloft.pipeline.chain_check import check_chain
-from stackloft.pipeline.layers import Place, check_addresses, options_at
+from stackloft.pipeline.layers import Place, check_addresses, check_preset, options_at
 from stackloft.pipeline.request import ALL_METHODS, DEFAULT_METHOD, MeasureRequest
 from stackloft.registry import Loaded, catalogue, choose_reader, find, instantiate, load
 
@@ -129,6 +129,8 @@ def _outline(
         recipe = find("recipe", name)
         places = [_place(step, name, recipe) for step in recipe.plugin.steps]
         check_chain(name, kinds, segmenter, [place.loaded for place in places])
+        for place in places:
+            check_preset(place)
     except StackloftError as error:
         if asked != ALL_METHODS:
             raise

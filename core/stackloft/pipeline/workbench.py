@@ -5,19 +5,20 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from stackloft.contracts.sink import Sink
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import PluginError, StackloftError
-from stackloft.model.segmentation import Segmentation
-from stackloft.model.slice_stack import SliceStack
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.pipeline.chain_check import ladder
-from stackloft.pipeline.decode_once import Slice, decode_once
 from stackloft.pipeline.plan import Plan, Step
 from stackloft.pipeline.progress import Progress
 from stackloft.registry import RUN, Loaded, failure, plain
+from stackloft.sectioning.contour_sink import ContourSink, feed
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +89,12 @@ class Workbench:
 
     def _trace(self, item: Item) -> ContourStack:
         """Run the one decoding pass; the caller's sinks see the slices of the plan's own segmentation."""
-        from stackloft.sectioning.contour_sink import ContourSink  # noqa: PLC0415
-
         segmentation: Segmentation = item.value
         first = not any(name.startswith("contours(") for name in self.made)
-        sinks = (ContourSink(), *(self._sinks if first else ()))
+        sinks = (ContourSink(), *(self._sinks if first else ()), _Teller(self._progress))
         self._progress.begin("sections", len(segmentation))
         try:
-            contours, *others = decode_once(segmentation, sinks, self._loader(segmentation), self._progress)
+            contours, *others, _ = feed(self._blamed(segmentation), sinks)
         finally:
             self._progress.end()
         if first:
@@ -103,15 +102,16 @@ class Workbench:
         result: ContourStack = contours
         return result
 
-    def _loader(self, segmentation: Segmentation) -> Callable[[int], Slice]:
+    def _blamed(self, segmentation: Segmentation) -> Segmentation:
+        """Return the same slices, with the plug-in named whenever decoding or segmenting one crashes."""
         reader = self._plan.reader.loaded if self._plan.reader else None
         segmenter = self._plan.segmenter.loaded if self._plan.segmenter else reader
-
-        def load(index: int) -> Slice:
-            picture = _blaming(reader, segmentation.stack.decode, index)
-            return picture, _blaming(segmenter, segmentation.field_of, index, picture)
-
-        return load
+        stack = segmentation.stack
+        return replace(
+            segmentation,
+            stack=replace(stack, decode=partial(_blaming, reader, stack.decode)),
+            field_of=partial(_blaming, segmenter, segmentation.field_of),
+        )
 
     def _once(self, identity: str, stage: str, make: Callable[[], Any]) -> Item:
         if identity in self._failures:
@@ -132,6 +132,22 @@ class Workbench:
                 if own_bar:
                     self._progress.end()
         return Item(self.made[identity], identity)
+
+
+class _Teller:
+    """A `Sink` that only tells the progress display that one more slice is done."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+
+    def begin(self, segmentation: Segmentation) -> None:
+        pass
+
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
+        self._progress.advance()
+
+    def end(self) -> None:
+        pass
 
 
 def guarded(loaded: Loaded, call: Callable[[Any], Any], argument: Any) -> Any:
