@@ -135,7 +135,7 @@ def broken_open_tangents(
     --------
     >>> arriving, leaving = broken_open_tangents(np.arange(3.0), np.array([False, True, False]))
     >>> roof = np.array([0.0, 1.0, 0.0, 0.0, 0.0])
-    >>> (arriving @ roof)[1], (leaving @ roof)[1]
+    >>> float((arriving @ roof)[1]), float((leaving @ roof)[1])
     (1.0, -1.0)
     """
     n = len(nodes)

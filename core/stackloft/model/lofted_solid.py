@@ -1,12 +1,12 @@
-"""A solid lofted through sections: shells of bicubic B-spline patches between plane faces or poles.
+r"""A solid lofted through sections: shells of bicubic B-spline patches between plane faces or poles.
 
 ::
 
           pole or plane face (end)
             ___
-           /   \\      v: across sections   (rows of patches)
+           /   \      v: across sections   (rows of patches)
           |-----|     u: along the loop    (columns of patches, closed)
-           \\___/
+           \___/
           pole or plane face (end)
 """
 
@@ -16,7 +16,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray
+from stackloft.geometry.tessellation import tessellate_tube
+from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
+from stackloft.model.errors import UsageError
 from stackloft.model.measurement import EndReport
 from stackloft.model.notices import Notice
 from stackloft.model.tri_mesh import TriMesh
@@ -43,5 +45,33 @@ class LoftedSolid:
     notices: tuple[Notice, ...] = ()
 
     def tessellate(self, tolerance: float) -> TriMesh:
-        """Return a closed outward triangle surface no further than `tolerance` mm from the solid."""
-        raise NotImplementedError
+        """Return a closed outward triangle surface.
+
+        Parameters
+        ----------
+        tolerance : float
+            Largest distance between triangles and solid, mm, positive.
+
+        Returns
+        -------
+        TriMesh
+            In bench millimetres.
+
+        Raises
+        ------
+        UsageError
+            The tolerance is not positive.
+        """
+        if not tolerance > 0.0:
+            raise UsageError("the tolerance must be positive", found=f"{tolerance:g} mm")
+        vertices, faces, count = [], [], 0
+        for shell in self.shells:
+            points, triangles = tessellate_tube(shell.patches, shell.plane_ends, tolerance)
+            vertices.append(points)
+            faces.append(triangles + count)
+            count += len(points)
+        placed = np.concatenate(vertices) @ self.affine[:3, :3].T + self.affine[:3, 3]
+        joined = np.concatenate(faces)
+        if np.linalg.det(self.affine[:3, :3]) < 0.0:
+            joined = joined[:, ::-1]
+        return TriMesh(frozen_floats(placed), frozen_ints(joined))

@@ -14,7 +14,7 @@ from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.sectioning.corner_columns import CornerChain, follow_corners, place_at, share_points
-from stackloft.sectioning.smoothing import smooth_loop
+from stackloft.sectioning.loop_curves import ready_loop
 
 SAMPLES = 128
 """Samples of a loop when phases are compared."""
@@ -57,7 +57,8 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
             found=str(len(loops)), fix="give the whole stack, not one slice",
         )  # fmt: skip
     ready = [
-        _ready(loop, contours, section.name) for loop, section in zip(loops, contours.sections, strict=True)
+        ready_loop(loop, contours, section.name)
+        for loop, section in zip(loops, contours.sections, strict=True)
     ]
     curves = fit_curves([loop.points for loop in ready], [loop.corners for loop in ready])
     z = contours.positions
@@ -86,24 +87,6 @@ def _single_loop(section: Section) -> Loop:
         fix="leave out sections without the body; holes and branches cannot be lofted yet: try"
         " --method cavalieri for the volume alone",
     )
-
-
-def _ready(loop: Loop, contours: ContourStack, name: str) -> Loop:
-    """Return the loop counter-clockwise, without repeated points, smoothed when it was traced."""
-    if not contours.exact:
-        loop = smooth_loop(loop, contours.resolution)
-    points = np.asarray(loop.points)
-    size = np.ptp(points, axis=0).max()
-    step = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1)
-    keep = step > 1e-9 * size
-    corners = (np.cumsum(keep) - 1)[loop.corners]
-    points = points[keep]
-    if len(points) < 3 or abs(Loop(points).signed_area) < 1e-12 * size**2:
-        raise InputError("a loop without area", where=name, found=f"{len(points)} distinct points")
-    if Loop(points).signed_area < 0.0:
-        points = points[::-1]
-        corners = np.sort(len(points) - 1 - corners)
-    return Loop(points, corners)
 
 
 def _solve_seams(

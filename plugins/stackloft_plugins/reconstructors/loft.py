@@ -106,7 +106,7 @@ def _reports(
 
 def _flipped(points: FloatArray) -> FloatArray:
     """Return the stack turned over, so that its last section comes first and z still increases."""
-    return points[::-1, ::-1] * np.array([1.0, 1.0, -1.0])
+    return np.asarray(points[::-1, ::-1] * np.array([1.0, 1.0, -1.0]))
 
 
 def _report(points: FloatArray, corners: BoolArray, end: PlannedEnd, contours: ContourStack) -> EndReport:
