@@ -22,15 +22,24 @@ app = typer.Typer(
 )
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(version("stackloft"))
+        raise typer.Exit
+
+
 @app.callback()
 def _root(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version and leave.", callback=_print_version, is_eager=True
+        ),
+    ] = False,
 ) -> None:
-    if version:
-        from importlib.metadata import version as version_of
-
-        typer.echo(version_of("stackloft"))
-        raise typer.Exit
+    pass
 
 
 @app.command()
@@ -41,7 +50,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     json: a.Json = False,
     quiet: a.Quiet = False,
     write: a.Write = None,
-    units: a.ShownUnits = a.Units.CM,
+    units: a.TableUnits = None,
     pixel_size: a.PixelSize = None,
     thickness: a.Thickness = None,
     positions: a.Positions = None,
@@ -71,7 +80,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     }
     writers, own = split_settings(parse_settings(settings or ()))
     request = request_of(source, reader=reader, method=method, flags=flags, settings=own, recipe=recipe)
-    run(request, Output(out, a.names_of(write), writers, json, quiet, units.value))
+    run(request, Output(out, a.names_of(write), writers, json, quiet, units and units.value))
 
 
 @app.command()

@@ -34,6 +34,9 @@ Write = Annotated[
     typer.Option("--write", metavar="NAME,…", help="Also write the solid into --out: stl, ply."),
 ]
 ShownUnits = Annotated[Units, typer.Option("--units", help="Unit of the table.")]
+TableUnits = Annotated[
+    Units | None, typer.Option("--units", help="Unit of the table.  [default: stack.toml's, or cm]")
+]
 Reader = Annotated[
     str | None,
     typer.Option("--reader", metavar="NAME", help="Reader to use instead of the one that knows SOURCE."),

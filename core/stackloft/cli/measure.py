@@ -11,6 +11,7 @@ from typing import Any
 from stackloft.cli.progress import progress_display
 from stackloft.cli.result_table import quiet_lines, show_result
 from stackloft.cli.screen import console
+from stackloft.contracts.stack_file import load_stack_file
 from stackloft.model.errors import UsageError
 from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.recipe_file import load_recipe
@@ -66,7 +67,8 @@ class Output:
     writer_settings: Mapping[str, Mapping[str, Any]]
     json: bool
     quiet: bool
-    unit: str
+    unit: str | None
+    """Unit of the table; None: what ``stack.toml`` says, or cm."""
 
 
 def run(request: MeasureRequest, output: Output) -> None:
@@ -87,7 +89,7 @@ def run(request: MeasureRequest, output: Output) -> None:
                 files.append(path)
                 progress.advance()
             progress.end()
-    _show(outcome, files, output)
+    _show(outcome, files, output, output.unit or _unit_of(request.source))
 
 
 def _folder(output: Output, source: Path) -> RunFolder | None:
@@ -107,15 +109,20 @@ def _folder(output: Output, source: Path) -> RunFolder | None:
     return None
 
 
-def _show(outcome: Outcome, files: list[Path], output: Output) -> None:
+def _unit_of(source: Path) -> str:
+    """Return the unit that the source's folder asks for, cm when it asks for none."""
+    return load_stack_file(source if source.is_dir() else source.parent).units or "cm"
+
+
+def _show(outcome: Outcome, files: list[Path], output: Output, unit: str) -> None:
     result = outcome.result
     if output.json:
         build("writer", "json").write(result, sys.stdout.buffer)
         sys.stdout.buffer.flush()
     if not output.quiet:
-        show_result(console(stderr=output.json), result, files, output.unit)
+        show_result(console(stderr=output.json), result, files, unit)
         return
     if not output.json:
-        print(*quiet_lines(result, output.unit), sep="\n")  # noqa: T201 - the command's own output
+        print(*quiet_lines(result, unit), sep="\n")  # noqa: T201 - the command's own output
     for notice in result.warnings:
         print(f"stackloft: {notice.code}: {notice.message}", file=sys.stderr)  # noqa: T201

@@ -1,0 +1,5 @@
+"""``python -m stackloft.cli``."""
+
+from stackloft.cli import main
+
+main()
