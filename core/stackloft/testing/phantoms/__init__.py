@@ -8,6 +8,20 @@
 """
 
 from stackloft.testing.phantoms.catalogue import NAMES, make
+from stackloft.testing.phantoms.contour_file import Contours
 from stackloft.testing.phantoms.phantom import Phantom
+from stackloft.testing.phantoms.photographs import Photographs
+from stackloft.testing.phantoms.realism import Realism
+from stackloft.testing.phantoms.writing import write_contours, write_phantom, write_photos
 
-__all__ = ["NAMES", "Phantom", "make"]
+__all__ = [
+    "NAMES",
+    "Contours",
+    "Phantom",
+    "Photographs",
+    "Realism",
+    "make",
+    "write_contours",
+    "write_phantom",
+    "write_photos",
+]
