@@ -55,7 +55,7 @@ def plain(
     shape = depth.shape
     mottle = texture * (5 * relief(rng, shape, 6) + 3 * relief(rng, shape, 1.5))
     colour = _rgb(176, 128, 96) + mottle + 0 * body
-    return _blend(colour, _rgb(140, 100, 74), 0.9 * _skin(depth, rim))
+    return _blend(colour, _rgb(156, 113, 84), 0.95 * _skin(depth, rim))
 
 
 def apple(
@@ -64,9 +64,10 @@ def apple(
     """Return pale flesh, the core's outline and its pips near the axis (y), and a yellow-green skin."""
     shape = depth.shape
     x, y, z = body
-    grain = texture * (2.5 * relief(rng, shape, 10) + 2.0 * relief(rng, shape, 1.2))
-    streaks = texture * 2.0 * relief(rng, shape, (1.0, 7.0))
-    colour = _rgb(231, 218, 176) + grain + streaks
+    grain = texture * (
+        2.5 * relief(rng, shape, 12) + 1.5 * relief(rng, shape, 3) + 2.0 * relief(rng, shape, 1.2)
+    )
+    colour = _rgb(231, 218, 176) + grain
     from_axis = np.hypot(x, z)
     lens = np.clip(1 - (y / 19) ** 2, 0, None)
     line = np.exp(-(((from_axis - 15 * np.sqrt(lens)) / 0.7) ** 2)) * (lens > 0)
@@ -79,7 +80,7 @@ def apple(
     colour = _blend(colour, _rgb(190, 180, 118), texture * 0.5 * stalk)
     colour = _blend(colour, _rgb(218, 212, 150), np.exp(-((depth / 2.5) ** 2)) * 0.7)
     blush = np.clip(0.5 + 0.35 * relief(rng, shape, 60) + 0.01 * x, 0, 1)
-    skin = _blend(_rgb(172, 184, 84) + 0 * colour, _rgb(214, 140, 84), blush)
+    skin = _blend(_rgb(196, 200, 96) + 0 * colour, _rgb(224, 156, 92), blush)
     return _blend(colour, skin, 0.95 * _skin(depth, rim))
 
 
@@ -92,7 +93,8 @@ def meat(
     fibre = relief(rng, shape, (1.2, 3.5))
     colour = _rgb(158, 58, 60) + texture * (7 * relief(rng, shape, 28) + 4 * fibre) * _rgb(1.0, 0.75, 0.75)
     slopes = np.gradient(bundles)
-    seam = np.exp(-((bundles / (0.55 * np.hypot(*slopes) + 1e-9) / 2.2) ** 2))
+    width = np.clip(2.4 + 1.2 * relief(rng, shape, 25), 1.0, 5.0)
+    seam = np.exp(-((bundles / (0.55 * np.hypot(*slopes) + 1e-9) / width) ** 2))
     broken = np.clip(0.35 + 0.8 * relief(rng, shape, 16), 0, 1)
     fat = seam * broken * (depth > 1.5 * rim)
     colour = _blend(colour, _rgb(196, 124, 116), texture * 0.75 * gaussian_filter(fat, 0.6))

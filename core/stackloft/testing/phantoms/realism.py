@@ -28,7 +28,7 @@ class Realism:
     seed: int = 0
     texture: float = 1.0
     """Strength of the flesh's pattern; 0 is one even colour."""
-    rim: float = 0.5
+    rim: float = 0.6
     """Width of the skin, mm."""
     plate: Rgb | None = None
     """The plate's colour, 0–255; None: by the plate's name."""
