@@ -1,4 +1,10 @@
-"""Sections at which the body's side turns sharply, as a double cone's does at its equator."""
+r"""Sections at which the body's side turns sharply: a double cone's equator, the two edges of a step.
+
+::
+
+      /\  one sharp row            ____|     two sharp rows side by side, turning to and fro:
+     /  \ between straight ones   |          a step; smooth splines would overshoot there
+"""
 
 from __future__ import annotations
 
@@ -33,6 +39,9 @@ def find_creases(rows: FloatArray) -> BoolArray:
     >>> radius, z = [1.0, 2.0, 3.0, 2.0, 1.0], [-2.0, -1.0, 0.0, 1.0, 2.0]
     >>> find_creases(np.stack([ring * r + [0, 0, h] for r, h in zip(radius, z)])).tolist()
     [False, False, True, False, False]
+    >>> radius, z = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    >>> find_creases(np.stack([ring * r + [0, 0, h] for r, h in zip(radius, z)])).tolist()
+    [False, False, True, True, False, False]
     """
     n = len(rows)
     creases = np.zeros(n, dtype=bool)
@@ -43,7 +52,11 @@ def find_creases(rows: FloatArray) -> BoolArray:
     direction = step / np.maximum(length, 1e-300)
     cosine = np.clip((direction[1:] * direction[:-1]).sum(axis=2), -1.0, 1.0)
     turn = np.arccos(cosine).mean(axis=1)  # of rows 1 … n - 2
-    middle = turn[1:-1]
-    quiet = np.maximum(turn[:-2], turn[2:]) < QUIET * middle
-    creases[2:-2] = (middle > SHARP) & quiet
+    padded = np.concatenate([[np.inf], turn, [np.inf]])  # what lies beyond the first and last row is unknown
+    sharp = turn > SHARP
+    before, after = padded[:-2], padded[2:]
+    creases[1:-1] = sharp & (np.maximum(before, after) < QUIET * turn)
+    for k in np.flatnonzero(sharp[:-1] & sharp[1:]):
+        least = min(turn[k], turn[k + 1])
+        creases[k + 1 : k + 3] |= max(padded[k], padded[k + 3]) < QUIET * least
     return creases

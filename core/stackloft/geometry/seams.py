@@ -14,9 +14,16 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+ComplexArray = NDArray[np.complex128]
+
+_TO_COMPLEX = np.array([1.0, 1.0j])
 
 TIE = 0.02
 """Two phases whose scores (0 to 3) differ by less are a near tie."""
+ALIKE = 0.98
+"""Shapes whose tangents correlate better than this fraction of the best are the same shape, turned."""
+TURNS_APART = np.radians(15.0)
+"""Two turns, one to the left and one to the right, whose angles differ by less cannot be told apart."""
 APART = 1.0 / 16.0
 """Phases closer than this fraction of a turn are the same maximum."""
 
@@ -60,12 +67,13 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
     array([0.   , 0.125])
     """
     score = _scores(points, tangents, corners)
+    unsure = _turns_unsure(tangents)
     steps, tied = [], []
     twist = 0.0
     for pair, row in enumerate(score):
         twist, is_tied = _best_step(row, twist)
         steps.append(twist)
-        if is_tied:
+        if is_tied or unsure[pair]:
             tied.append(pair)
     phases = np.concatenate([[0.0], np.cumsum(steps)])
     return SeamPhases(phases, np.array(tied, dtype=np.int64))
@@ -73,24 +81,45 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
 
 def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
     """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
-    to_complex = np.array([1.0, 1.0j])
-    position = points @ to_complex
-    direction = tangents @ to_complex
-    direction /= np.abs(direction)
-    score = _correlation(position) + _correlation(direction)
+    score = _correlation(points @ _TO_COMPLEX).real + _correlation(_directions(tangents)).real
     if any(len(c) for c in corners):
-        score += _correlation(_corner_signal(corners, points.shape[1]))
+        score += _correlation(_corner_signal(corners, points.shape[1])).real
     return score
 
 
-def _correlation(signal: NDArray[np.complex128]) -> FloatArray:
+def _directions(tangents: FloatArray) -> ComplexArray:
+    direction: ComplexArray = tangents @ _TO_COMPLEX
+    return direction / np.abs(direction)
+
+
+def _turns_unsure(tangents: FloatArray) -> NDArray[np.bool_]:
+    """Return for each pair whether the same shape may have turned left as well as right.
+
+    The modulus of the tangents' correlation tells how alike two loops are whatever the turn between
+    them, its phase tells the turn. A shape that matches unturned, or a round one that matches at any
+    turn, leaves no doubt.
+    """
+    match = _correlation(_directions(tangents))
+    alike, turn = np.abs(match), np.angle(match)
+    best = alike.max(axis=1, keepdims=True)
+    peak = (
+        (alike >= np.roll(alike, 1, axis=1)) & (alike > np.roll(alike, -1, axis=1)) & (alike > ALIKE * best)
+    )
+    left = np.where(peak & (turn > 0.0), turn, np.inf).min(axis=1)
+    right = np.where(peak & (turn < 0.0), -turn, np.inf).min(axis=1)
+    with np.errstate(invalid="ignore"):
+        same = np.abs(left - right) < TURNS_APART
+    return np.asarray(same & (alike[:, 0] < ALIKE * best[:, 0]))
+
+
+def _correlation(signal: ComplexArray) -> ComplexArray:
     """Return the normalised circular correlation of each row with the next, at every shift."""
     norm = np.sqrt((np.abs(signal) ** 2).sum(axis=1))
     spectrum = np.fft.fft(signal, axis=1) / np.where(norm > 0, norm, 1.0)[:, None]
-    return np.asarray(np.fft.ifft(np.conj(spectrum[:-1]) * spectrum[1:], axis=1).real)
+    return np.asarray(np.fft.ifft(np.conj(spectrum[:-1]) * spectrum[1:], axis=1))
 
 
-def _corner_signal(corners: list[FloatArray], samples: int) -> NDArray[np.complex128]:
+def _corner_signal(corners: list[FloatArray], samples: int) -> ComplexArray:
     """Return a bump of about 2 % of the loop at every corner, (m, samples)."""
     grid = np.arange(samples) / samples
     rows = np.zeros((len(corners), samples))
