@@ -205,12 +205,16 @@ class Phantom:
         return bool(abs(level - z) <= _FLUSH * (1 + abs(z)))
 
     def _box(self, z: float) -> tuple[FloatArray, FloatArray]:
-        """Return a rectangle that holds the section with a margin, from the sampled boundary."""
+        """Return a rectangle about the section, from the sampled boundary."""
         crossings = np.concatenate(
             [_crossings(self._mesh(i), z) for i in range(len(self.body.patches))], axis=1
         )
-        if not crossings.shape[1]:
-            return np.zeros(2), np.zeros(2)
+        if not crossings.shape[1]:  # a cap too shallow for the samples: of the order of √(height · cap)
+            poles = self._poles()
+            cap = np.abs(poles[:, 2] - z)
+            x, y, _ = poles[np.argmin(cap)]
+            half = np.sqrt(cap.min() * np.ptp(poles[:, 2]))
+            return np.array([x - half, y - half]), np.array([x + half, y + half])
         low, high = crossings.min(axis=1), crossings.max(axis=1)
         margin = 0.06 * (high - low).max()
         return low - margin, high + margin

@@ -21,6 +21,7 @@ from stackloft.testing.phantoms.plane_cut import PlaneCut
 _GRID = 121
 _TINY = 1e-9
 _SPREADS = 3
+_FITS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +45,7 @@ def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tup
     cut : PlaneCut
         The inequalities on the plane.
     box : pair of array (2)
-        Lower and upper corner of a rectangle that holds the section with a margin, mm.
+        Lower and upper corner of a rectangle about the section, mm; it is grown or shrunk to fit.
     points : int
         Points on each loop; corners are among them.
     """
@@ -58,15 +59,35 @@ def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tup
 
 def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray]) -> list[FloatArray]:
     """Return closed polylines (2, k), last point not repeated, near the boundary."""
-    from skimage.measure import find_contours  # noqa: PLC0415 - heavy, and only phantoms in oblique poses need it
-
     low, high = box
+    rings: list[FloatArray] = []
+    for _ in range(_FITS):
+        rings, cut_off = _grid_rings(cut, low, high)
+        if cut_off:
+            low, high = low - 0.3 * (high - low), high + 0.3 * (high - low)
+            continue
+        if not rings:
+            return []
+        least = np.min([ring.min(axis=1) for ring in rings], axis=0)
+        most = np.max([ring.max(axis=1) for ring in rings], axis=0)
+        if (most - least > (high - low) / 2).all():
+            break
+        margin = 0.1 * (most - least).max()
+        low, high = least - margin, most + margin
+    return rings
+
+
+def _grid_rings(cut: PlaneCut, low: FloatArray, high: FloatArray) -> tuple[list[FloatArray], bool]:
+    """Return the rings found on a grid over a rectangle, and whether its border cuts the section off."""
+    from skimage.measure import find_contours  # noqa: PLC0415 - heavy, and not needed by polyhedra
+
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
     X, Y = np.meshgrid(x, y, indexing="ij")
     field = cut.worst(np.stack([X.ravel(), Y.ravel()]))[0].reshape(X.shape)
     cell = (high - low) / (_GRID - 1)
     rings = [(low + cell * ring[:-1]).T for ring in find_contours(field, 0.0)]  # type: ignore[no-untyped-call]
-    return [ring for ring in rings if ring.shape[1] >= 3]
+    border = np.concatenate([field[0], field[-1], field[:, 0], field[:, -1]])
+    return [ring for ring in rings if ring.shape[1] >= 3], bool((border <= 0).any())
 
 
 def _arcs(cut: PlaneCut, ring: FloatArray) -> list[_Arc]:
