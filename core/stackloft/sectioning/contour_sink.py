@@ -12,6 +12,7 @@ from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture
+from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
 
 THREADS = 2
@@ -24,7 +25,7 @@ _NAMED = 3  # slices named in a notice that stands for several
 
 
 class ContourSink:
-    """Traces each slice as it comes by; ends with the stack of sections.
+    """Traces each slice as it comes by, corners and all; ends with the stack of sections.
 
     Examples
     --------
@@ -62,7 +63,8 @@ class ContourSink:
         row, column = (float(step) for step in stack.pixel_spacing[index])
         name = stack.names[index]
         traced = trace_field(section_field, (row, column), stack.shape, name, self._rules)
-        self._sections.append(Section(float(stack.positions[index]), traced.loops, name))
+        loops = tuple(with_corners(loop, max(row, column)) for loop in traced.loops)
+        self._sections.append(Section(float(stack.positions[index]), loops, name))
         self._notices += [*section_field.notices, *traced.notices]
 
     def end(self) -> ContourStack:
