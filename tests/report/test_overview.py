@@ -16,7 +16,7 @@ MARGIN = 12
 """Pixels from the sheet's edge to the first photograph."""
 
 
-def disc_stack(count=3, shape=(300, 400), spacing=(0.5, 0.25), dtype=np.uint8, colour=False):
+def disc_stack(count=3, shape=(300, 400), spacing=(0.5, 0.5), dtype=np.uint8, colour=False):
     """Return a stack of ellipses with centre (45, 80) mm and half axes (20, 30) mm, and its loops."""
     rows, columns = np.mgrid[: shape[0], : shape[1]]
     inside = ((columns * spacing[1] - 45) / 20) ** 2 + ((rows * spacing[0] - 80) / 30) ** 2 < 1
@@ -37,9 +37,10 @@ def disc_stack(count=3, shape=(300, 400), spacing=(0.5, 0.25), dtype=np.uint8, c
     return stack, ContourStack(sections)
 
 
-def thumbnails(stack):
+def thumbnails(stack, field=None):
+    """Return what the sink keeps; without a `field` the body's window is the whole picture."""
     sink = ThumbnailSink()
-    field = SectionField(np.zeros((1, 1)), 0.5)
+    field = field or SectionField(np.zeros(stack.shape), 0.5)
     sink.begin(Segmentation(stack, lambda index, picture: field))
     for index in range(len(stack)):
         sink.add(index, stack.decode(index), field)
@@ -58,19 +59,44 @@ def drawn(contours, small):
     return (overview(contours, small) != overview(bare, small)).any(axis=2)
 
 
-@pytest.mark.parametrize("shape", [(300, 400), (1200, 1600)], ids=["as large as shown", "reduced"])
+def off_the_ellipse(sheet, small):
+    """Return the drawn pixels' distance from the ellipse, as a fraction of its size."""
+    rows, columns = np.nonzero(sheet)
+    x = (columns - MARGIN - small.origin[0]) / small.per_mm[0]
+    y = (rows - MARGIN - small.origin[1]) / small.per_mm[1]
+    assert len(rows) > 400
+    return np.hypot((x - 45) / 20, (y - 80) / 30) - 1
+
+
+@pytest.mark.parametrize("shape", [(300, 400), (1200, 1600)], ids=["enlarged", "reduced"])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float64])
 def test_the_contour_lies_on_the_boundary_of_its_photograph(shape, dtype):
-    spacing = (0.5 * 300 / shape[0], 0.25 * 400 / shape[1])
+    spacing = (0.5 * 300 / shape[0], 0.5 * 300 / shape[0])
     stack, contours = disc_stack(1, shape, spacing, dtype)
     (small,) = thumbnails(stack)
-    rows, columns = np.nonzero(drawn(contours, [small]))
-    height, width = small.picture.shape[:2]
-    x, y = (columns - MARGIN + 0.5) / width * 100, (rows - MARGIN + 0.5) / height * 150
-    radius = np.hypot((x - 45) / 20, (y - 80) / 30)
-    assert len(rows) > 400
-    assert np.abs(radius - 1).max() < 0.04, "two pixels of a thumbnail"
-    assert abs(radius.mean() - 1) < 0.002, "a twentieth of a pixel on the whole: no half-pixel shift"
+    distance = off_the_ellipse(drawn(contours, [small]), small)
+    assert np.abs(distance).max() < 0.04, "two pixels of a thumbnail"
+    assert abs(distance.mean()) < 0.002, "a twentieth of a pixel on the whole: no half-pixel shift"
+    bright = small.picture[..., 0] > 110
+    rows, columns = np.nonzero(bright)
+    x, y = (columns - small.origin[0]) / small.per_mm[0], (rows - small.origin[1]) / small.per_mm[1]
+    assert [x.mean(), y.mean()] == pytest.approx([45, 80], abs=0.03), "the photograph is there as well"
+
+
+def test_a_body_that_is_small_in_its_photograph_fills_its_thumbnail():
+    stack, contours = disc_stack(1, (1200, 1600), (0.5, 0.5))
+    window = SectionField(np.zeros((130, 90)), 0.5, offset=(95, 45))
+    (small,) = thumbnails(stack, window)
+    distance = off_the_ellipse(drawn(contours, [small]), small)
+    assert abs(distance.mean()) < 0.002
+    assert max(small.picture.shape) == LARGEST
+    assert small.extent == pytest.approx((0.5 * (90 + 2 * 18), 0.5 * (130 + 2 * 26)))
+
+
+def test_pixels_that_are_not_square_are_drawn_true_to_scale():
+    stack, contours = disc_stack(1, (300, 400), (0.5, 0.25))
+    rows, columns = np.nonzero(drawn(contours, thumbnails(stack)))
+    assert np.ptp(rows) / np.ptp(columns) == pytest.approx(1.5, rel=0.02)
 
 
 def test_every_section_is_drawn_and_a_slice_without_one_is_shown_bare():
@@ -112,7 +138,7 @@ def test_thumbnails_hold_no_view_of_the_photograph():
     stack, _ = disc_stack(1, colour=True)
     (small,) = thumbnails(stack)
     assert not np.shares_memory(small.picture, stack.decode(0))
-    assert small.picture.shape == (300, 400, 3)
+    assert small.picture.shape == (360, 480, 3)
 
 
 def test_a_flat_picture_and_one_with_gaps_become_rgb():

@@ -106,6 +106,42 @@ def info(
     run(request, as_json=json, unit=units.value)
 
 
+@app.command()
+@guarded
+def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
+    name: a.PhantomName,
+    form: a.Form,
+    out: a.PhantomOut,
+    parameters: a.Parameters = None,
+    sections: a.Sections = None,
+    placing: a.Placing = None,
+    pixel_size: a.PixelSize = None,
+    rotation: a.Rotation = None,
+    offset: a.Offset = None,
+    realistic: a.Realistic = False,
+    seed: a.Seed = None,
+    plate: a.Plate = None,
+    suffix: a.Suffix = None,
+    tell: a.Tell = None,
+) -> None:
+    """Write a stack whose volume and area are known, to try things on."""
+    from stackloft.cli.phantom import run
+
+    options = {
+        "sections": sections,
+        "placing": placing,
+        "pixel_size": pixel_size,
+        "rotation": rotation,
+        "offset": offset,
+        "realistic": realistic or None,
+        "seed": seed,
+        "plate": plate,
+        "suffix": suffix,
+        "tell": tell,
+    }
+    run(name, form, out, options, parameters or ())
+
+
 plugins = typer.Typer(help="What is installed, and which options it has.", no_args_is_help=True)
 app.add_typer(plugins, name="plugins")
 

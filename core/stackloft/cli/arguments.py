@@ -95,3 +95,46 @@ def names_of(text: str | None) -> tuple[str, ...]:
     """
     names = (name.strip() for name in (text or "").split(","))
     return tuple(dict.fromkeys(name for name in names if name))
+
+
+PHANTOMS = (
+    *("apple", "banana", "box", "cone", "cylinder", "double-cone", "dumbbell", "ellipsoid", "frustum"),
+    *("meat", "potato", "prism", "superellipsoid", "twisted-bar", "two-lobed"),
+)
+"""Names for the help text, which imports no phantom; a test compares them with the phantoms' own."""
+
+PhantomName = Annotated[
+    str,
+    typer.Argument(
+        metavar="NAME",
+        help=f"One of {', '.join(PHANTOMS)}.",
+        show_default=False,
+    ),
+]
+Form = Annotated[str, typer.Option("--as", metavar="FORM", help="photos or contours.")]
+PhantomOut = Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder to fill.")]
+Parameters = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="The body's own size, as in a=30mm; may be repeated."),
+]
+Sections = Annotated[int | None, typer.Option("--sections", help="How many.  [default: 11]")]
+Placing = Annotated[
+    str | None,
+    typer.Option(
+        "--placing", metavar="mid|faces|LEN,…", help="Mid-thickness, cut faces, or positions.  [default: mid]"
+    ),
+]
+Rotation = Annotated[
+    str | None,
+    typer.Option("--rotation", metavar="SEED|X,Y,Z", help="Pose: a seed, or degrees about the axes."),
+]
+Offset = Annotated[str | None, typer.Option("--offset", metavar="LEN,LEN,LEN", help="Pose: shift.")]
+Realistic = Annotated[
+    bool, typer.Option("--realistic", help="Flesh, skin, uneven light, blur, noise; photographs only.")
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="Of the realism's random numbers.")]
+Plate = Annotated[str | None, typer.Option("--plate", metavar="white|black", help="What the slice lies on.")]
+Suffix = Annotated[str | None, typer.Option("--suffix", help="png, jpg, tif, bmp or webp.  [default: png]")]
+Tell = Annotated[
+    str | None, typer.Option("--tell", metavar="KEY,…", help="What stack.toml says, as in thickness,height.")
+]

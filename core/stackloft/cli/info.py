@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from stackloft.cli.screen import console
-from stackloft.cli.units import in_unit
+from stackloft.cli.units import length
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.notices import Notice
@@ -152,7 +152,9 @@ def _lines(facts: dict[str, Any], unit: str) -> list[tuple[str, str]]:
         lines.append(("loops", " ".join(str(count) for count in facts["loops"])))
     if "triangles" in facts:
         lines.append(("surface", f"{facts['triangles']} triangles, {facts['vertices']} vertices"))
-    lines += [(key, f"from {value}") for key, value in facts.get("provenance", {}).items()]
+    sources = facts.get("provenance", {})
+    lines = [(name, f"{text} ({sources[name]})" if name in sources else text) for name, text in lines]
+    lines += [(name, text) for name, text in sources.items() if name not in dict(lines)]
     lines += [(key.replace("_", " "), _said(value)) for key, value in facts.get("hints", {}).items()]
     return lines
 
@@ -164,7 +166,7 @@ def _between(names: Sequence[str]) -> str:
 def _lengths(pair: Sequence[float] | None, unit: str, joint: str = " … ") -> str:
     if pair is None:
         return "not defined by one slice"
-    low, high = (in_unit(value, unit, 1) for value in pair)
+    low, high = (length(value, unit) for value in pair)
     return low if low == high and joint == " … " else f"{low}{joint}{high}"
 
 

@@ -14,16 +14,18 @@ from stackloft.cli.units import in_unit, significant, with_uncertainty
 from stackloft.model.measurement import EndReport, Figure, Measurement, Result
 
 _PLACES = ("first", "last")
+_ROUGH = 3
+"""Significant digits of a guess."""
 
 
 def show_result(console: Console, result: Result, files: Sequence[Path], unit: str) -> None:
     """Print `result` in `unit` with its warnings and the files written."""
     for measurement in result.objects:
         console.print(Text(_heading(result, measurement), style="bold"))
-        console.print(Padding(_body(measurement, unit), (0, 0, 0, 2)))
+        console.print(Padding(_body(measurement, unit), (0, 0, 0, 2), expand=False))
     if result.warnings:
         console.print(Text("warnings", style="bold yellow"))
-        console.print(Padding(_warnings(result), (0, 0, 0, 2)))
+        console.print(Padding(_warnings(result), (0, 0, 0, 2), expand=False))
     if files:
         console.print(Text("files", style="bold"))
         for path in files:
@@ -79,17 +81,20 @@ def _figure(figure: Figure | None, unit: str, power: int) -> str:
 def _ends(ends: Sequence[EndReport], unit: str) -> Table:
     table = Table.grid(padding=(0, 2))
     for place, end in zip(_PLACES, ends, strict=False):
-        beyond = f" {in_unit(end.length, unit, 1)} beyond the section" if end.length else ""
-        table.add_row(f"{place} end", Text(f"{end.kind}{beyond}: {end.reason}{_effect(end, unit)}"))
+        beyond = f", {in_unit(end.length, unit, 1, _ROUGH)} beyond the section" if end.length else ""
+        table.add_row(f"{place} end", Text(f"{end.kind}{beyond}; {_certainty(end, unit)}"))
     return table
 
 
-def _effect(end: EndReport, unit: str) -> str:
-    """Return what the end's guessed position may change, in both figures."""
-    if not end.guessed or end.volume_effect is None or end.area_effect is None:
-        return ""
-    volume, area = in_unit(abs(end.volume_effect), unit, 3), in_unit(abs(end.area_effect), unit, 2)
-    return f" (guessed: volume ± {volume}, area ± {area})"
+def _certainty(end: EndReport, unit: str) -> str:
+    """Return why the end was closed so, or what a guess may cost (its warning says why)."""
+    if not end.guessed:
+        return end.reason
+    if end.volume_effect is None or end.area_effect is None:
+        return f"guessed: {end.reason}"
+    volume = in_unit(abs(end.volume_effect), unit, 3, _ROUGH)
+    area = in_unit(abs(end.area_effect), unit, 2, _ROUGH)
+    return f"guessed: volume ± {volume}, area ± {area}"
 
 
 def _methods(measurement: Measurement, unit: str) -> Table:

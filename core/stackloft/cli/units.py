@@ -12,8 +12,8 @@ _DIGITS = 5
 """Significant digits of a figure whose uncertainty is not known."""
 
 
-def in_unit(value: float, unit: str, power: int) -> str:
-    """Return a figure given in mm, mm² or mm³ with its unit.
+def in_unit(value: float, unit: str, power: int, digits: int = _DIGITS) -> str:
+    """Return a figure given in mm, mm² or mm³ to `digits` significant digits with its unit.
 
     Parameters
     ----------
@@ -23,13 +23,15 @@ def in_unit(value: float, unit: str, power: int) -> str:
         One of `stackloft.model.lengths.MILLIMETRES`.
     power : int
         1 length, 2 area, 3 volume.
+    digits : int
+        Significant digits.
 
     Examples
     --------
     >>> in_unit(178042.3, "cm", 3), in_unit(15_320.4, "cm", 2)
     ('178.04 cm³', '153.20 cm²')
     """
-    return f"{significant(value / MILLIMETRES[unit] ** power)} {unit_name(unit, power)}"
+    return f"{significant(value / MILLIMETRES[unit] ** power, digits)} {unit_name(unit, power)}"
 
 
 def with_uncertainty(value: float, uncertainty: float | None, unit: str, power: int) -> str:
@@ -67,3 +69,14 @@ def significant(value: float, digits: int = _DIGITS) -> str:
         return f"{value:.{digits - 1}e}"
     places = digits - 1 - exponent
     return f"{round(value, places):.{max(places, 0)}f}"
+
+
+def length(value: float, unit: str) -> str:
+    """Return a length that somebody gave (mm) in `unit`, with no digit that says nothing.
+
+    Examples
+    --------
+    >>> length(0.3, "mm"), length(81.99999999, "cm")
+    ('0.3 mm', '8.2 cm')
+    """
+    return f"{value / MILLIMETRES[unit]:.6g} {unit_name(unit, 1)}"

@@ -8,6 +8,7 @@
      cut_01     cut_02     cut_03        file
      z 0 mm     z 5.6 mm   z 11.1 mm     position
 
+All slices are drawn at one scale, so that the body's taper is seen.
 Whoever looks at it sees within seconds whether a threshold took the plate for the body.
 """
 
@@ -37,6 +38,7 @@ COLOURS = {
 
 _GAP = 12
 _PAPER = (250, 250, 250)
+_MOUNT = (232, 232, 232)
 _INK = (40, 40, 40)
 _FRACTION_BITS = 4  # cv2 draws at a sixteenth of a pixel
 _ASPECT = 1.5
@@ -67,7 +69,9 @@ class _Cell:
 
 def _over_photographs(contours: ContourStack, thumbnails: Sequence[Thumbnail]) -> list[_Cell]:
     sections = {(section.name, round(section.z, 9)): section for section in contours.sections}
-    pairs = [(small, sections.get((small.name, round(small.z, 9)))) for small in thumbnails]
+    side = max(max(small.picture.shape) for small in thumbnails)
+    per_mm = side / max(max(small.extent) for small in thumbnails)
+    pairs = [(small.scaled(per_mm), sections.get((small.name, round(small.z, 9)))) for small in thumbnails]
     colour = _standing_out([(small, section) for small, section in pairs if section is not None])
     return [_cell(small, section, colour) for small, section in pairs]
 
@@ -92,7 +96,8 @@ def _cell(small: Thumbnail, section: Section | None, colour: tuple[int, int, int
         at = np.round(_pixels(loop, small) * (1 << _FRACTION_BITS)).astype(np.int32)
         cv2.polylines(picture, [at.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA, _FRACTION_BITS)
     unused = "" if section is not None else "  (not used)"
-    return _Cell(picture, (small.name, f"z {small.z:g} mm{unused}"))
+    position = f"{small.z:.2f}".rstrip("0").rstrip(".")
+    return _Cell(picture, (small.name, f"z {position} mm{unused}"))
 
 
 def _pixels(loop: Loop, small: Thumbnail) -> FloatArray:
@@ -130,7 +135,9 @@ def _grid(cells: Sequence[_Cell]) -> Image.Image:
     draw = ImageDraw.Draw(sheet)
     for number, cell in enumerate(cells):
         left, top = _GAP + number % columns * pitch[0], _GAP + number // columns * pitch[1]
-        sheet.paste(Image.fromarray(cell.picture), (left, top))
+        aside, down = (width - cell.picture.shape[1]) // 2, (height - cell.picture.shape[0]) // 2
+        draw.rectangle((left, top, left + width - 1, top + height - 1), fill=_MOUNT)
+        sheet.paste(Image.fromarray(cell.picture), (left + aside, top + down))
         for row, text in enumerate(cell.lines):
             at = left, top + height + row * line
             draw.text(at, _shortened(text, font, width), fill=_INK, font=font)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -23,9 +23,13 @@ TOTAL = 12e6
 """Pixels that all thumbnails together should not exceed."""
 
 
+AROUND = 0.2
+"""How much of the photograph is kept around the body, as a fraction of the body's window."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Thumbnail:
-    """One slice, small."""
+    """The part of one slice where the body is, small."""
 
     name: str
     """File or slice label."""
@@ -37,9 +41,32 @@ class Thumbnail:
     origin: tuple[float, float]
     """Where x = 0, y = 0 lies: (column, row), thumbnail pixels, centre of the first pixel at 0."""
 
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height, mm."""
+        rows, columns = self.picture.shape[:2]
+        return columns / self.per_mm[0], rows / self.per_mm[1]
+
+    def scaled(self, per_mm: float) -> Thumbnail:
+        """Return the same thumbnail with `per_mm` pixels per millimetre, both ways but for rounding."""
+        rows, columns = self.picture.shape[:2]
+        width, height = (max(1, round(length * per_mm)) for length in self.extent)
+        picture = resized(self.picture, (width, height))
+        along = width / columns, height / rows
+        return replace(
+            self,
+            picture=picture,
+            per_mm=(self.per_mm[0] * along[0], self.per_mm[1] * along[1]),
+            origin=((self.origin[0] + 0.5) * along[0] - 0.5, (self.origin[1] + 0.5) * along[1] - 0.5),
+        )
+
 
 class ThumbnailSink:
-    """A sink (`stackloft.contracts.sink`) that keeps a thumbnail of every slice, and nothing else."""
+    """A sink (`stackloft.contracts.sink`) that keeps a thumbnail of every slice, and nothing else.
+
+    The contours are drawn later, from what was measured. A body that is smaller than a thumbnail is
+    enlarged, for a contour lies between the pixels.
+    """
 
     def __init__(self) -> None:
         self._thumbnails: list[Thumbnail] = []
@@ -49,27 +76,48 @@ class ThumbnailSink:
         self._stack = segmentation.stack
         self._side = side_for(len(segmentation))
 
-    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
-        """Keep a small copy of `picture`; the contour is drawn later, from what was measured."""
-        rows, columns = picture.shape[:2]
-        factor = min(1.0, self._side / max(rows, columns))
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:
+        """Keep a small copy of where `picture` shows the body."""
+        top, left, bottom, right = _window(section_field, picture.shape)
+        part = picture[top:bottom, left:right]
+        rows, columns = part.shape[:2]
+        factor = self._side / max(rows, columns)
         size = max(1, round(columns * factor)), max(1, round(rows * factor))
-        small = cv2.resize(_resizable(picture), size, interpolation=cv2.INTER_AREA)
+        along = size[0] / columns, size[1] / rows
         row_spacing, column_spacing = self._stack.pixel_spacing[index]
-        along_x, along_y = size[0] / columns, size[1] / rows
         self._thumbnails.append(
             Thumbnail(
                 self._stack.names[index],
                 float(self._stack.positions[index]),
-                as_rgb(small),
-                (along_x / column_spacing, along_y / row_spacing),
-                (0.5 * along_x - 0.5, 0.5 * along_y - 0.5),
+                as_rgb(resized(_resizable(part), size)),
+                (along[0] / column_spacing, along[1] / row_spacing),
+                ((0.5 - left) * along[0] - 0.5, (0.5 - top) * along[1] - 0.5),
             )
         )
 
     def end(self) -> tuple[Thumbnail, ...]:
         """Return the thumbnails in slice order."""
         return tuple(self._thumbnails)
+
+
+def _window(section_field: SectionField, shape: tuple[int, ...]) -> tuple[int, int, int, int]:
+    """Return top, left, bottom, right of the field's window with its surroundings, within the picture."""
+    top, left = section_field.offset
+    rows, columns = section_field.values.shape
+    above, beside = math.ceil(AROUND * rows), math.ceil(AROUND * columns)
+    return (
+        max(0, top - above),
+        max(0, left - beside),
+        min(shape[0], top + rows + above),
+        min(shape[1], left + columns + beside),
+    )
+
+
+def resized(picture: Picture, size: tuple[int, int]) -> Picture:
+    """Return `picture` as (columns, rows) = `size`: averaged where it shrinks, interpolated elsewhere."""
+    shrinks = size[0] < picture.shape[1]
+    small: Picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
+    return small
 
 
 def side_for(count: int) -> int:
