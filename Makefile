@@ -37,8 +37,8 @@ check: $(READY) ## style, types, architecture, dependencies
 prove: $(READY) ## the full counts that the claims name; slow
 	$(BIN)/python -m pytest -n 2 -m prove
 
-bench: $(READY) ## speed of the parts, one script after the other
-	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+bench: $(READY) ## ratios and times, one script of benchmarks/ after the other
+	@for script in $(sort $(wildcard benchmarks/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 lock: ## renew requirements/py*.txt from pyproject.toml (needs uv: https://docs.astral.sh/uv/)
 	@command -v $(UV) >/dev/null || { echo "uv is not installed: pipx install uv, or make lock UV=path/to/uv"; exit 1; }
