@@ -77,11 +77,14 @@ def cheap(case: ReaderCase) -> None:
     with case.source(MANY) as source:
         case.reader().probe(source)  # imports what it needs
         folder = source if source.is_dir() else source.parent
-        with watching(folder) as watch:
-            case.reader().probe(source)
-    many = len(watch.opened)
+        watches = []
+        for _ in range(3):  # the quickest counts: the machine may be busy with something else
+            with watching(folder) as watch:
+                case.reader().probe(source)
+            watches.append(watch)
+    many, seconds = len(watches[0].opened), min(watch.seconds for watch in watches)
     must(many <= MOST_OPENED, f"probing a series of {MANY} slices opens {many} files")
-    must(watch.seconds <= MOST_SECONDS, f"probing a series of {MANY} slices takes {watch.seconds:.2f} s")
+    must(seconds <= MOST_SECONDS, f"probing a series of {MANY} slices takes {seconds:.2f} s")
 
 
 def no_side_effects(case: ReaderCase) -> None:

@@ -1,0 +1,132 @@
+"""Moving, scaling, mirroring and opening products, to see what that does to their figures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
+from stackloft.model.contour_stack import ContourStack, Loop
+from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.tri_mesh import TriMesh
+
+
+@singledispatch
+def transformed(product: Any, matrix: FloatArray, shift: FloatArray) -> Any:
+    """Return `product` with every point P at matrix·P + shift; orientation stays outward.
+
+    Parameters
+    ----------
+    product : ContourStack, LoftedSolid or TriMesh
+        For a ContourStack `matrix` must keep the axis: [[a, b, 0], [c, d, 0], [0, 0, e]], e > 0.
+    matrix : (3, 3) array
+        A similarity.
+    shift : (3,) array
+        mm
+    """
+    message = f"no way to move a {type(product).__name__}"
+    raise NotImplementedError(message)
+
+
+@transformed.register
+def _(product: ContourStack, matrix: FloatArray, shift: FloatArray) -> ContourStack:
+    if np.any(matrix[2, :2]) or np.any(matrix[:2, 2]) or matrix[2, 2] <= 0:
+        message = "a stack keeps its axis"
+        raise ValueError(message)
+
+    def moved(loop: Loop) -> Loop:
+        return replace(loop, points=frozen_floats(loop.points @ matrix[:2, :2].T + shift[:2]))
+
+    sections = tuple(
+        replace(section, z=float(matrix[2, 2] * section.z + shift[2]), loops=tuple(map(moved, section.loops)))
+        for section in product.sections
+    )
+    return replace(product, sections=sections)
+
+
+@transformed.register
+def _(product: LoftedSolid, matrix: FloatArray, shift: FloatArray) -> LoftedSolid:
+    def moved(patches: FloatArray) -> FloatArray:
+        points = patches @ matrix.T + shift
+        return frozen_floats(points[:, ::-1, :, ::-1] if np.linalg.det(matrix) < 0 else points)
+
+    shells = tuple(replace(shell, patches=moved(shell.patches)) for shell in product.shells)
+    return replace(product, shells=shells)
+
+
+@transformed.register
+def _(product: TriMesh, matrix: FloatArray, shift: FloatArray) -> TriMesh:
+    faces = product.faces[:, ::-1] if np.linalg.det(matrix) < 0 else product.faces
+    return replace(
+        product, vertices=frozen_floats(product.vertices @ matrix.T + shift), faces=frozen_ints(faces)
+    )
+
+
+@singledispatch
+def started_elsewhere(product: Any, steps: int) -> Any:
+    """Return the same product with its loops (columns, vertices) begun `steps` later."""
+    message = f"no start to shift in a {type(product).__name__}"
+    raise NotImplementedError(message)
+
+
+@started_elsewhere.register
+def _(product: ContourStack, steps: int) -> ContourStack:
+    """Begin each section's loop at another vertex."""
+
+    def rolled(loop: Loop, by: int) -> Loop:
+        corners = np.sort((loop.corners - by) % len(loop.points))
+        return replace(
+            loop, points=frozen_floats(np.roll(loop.points, -by, axis=0)), corners=frozen_ints(corners)
+        )
+
+    sections = tuple(
+        replace(section, loops=tuple(rolled(loop, steps * (k + 1)) for loop in section.loops))
+        for k, section in enumerate(product.sections)
+    )
+    return replace(product, sections=sections)
+
+
+@started_elsewhere.register
+def _(product: LoftedSolid, steps: int) -> LoftedSolid:
+    rolled = (replace(x, patches=frozen_floats(np.roll(x.patches, -steps, axis=1))) for x in product.shells)
+    return replace(product, shells=tuple(rolled))
+
+
+@started_elsewhere.register
+def _(product: TriMesh, steps: int) -> TriMesh:
+    count = len(product.vertices)
+    vertices = frozen_floats(np.roll(product.vertices, -steps, axis=0))
+    faces = np.roll(np.roll((product.faces - steps) % count, 1, axis=1), steps, axis=0)
+    return replace(product, vertices=vertices, faces=frozen_ints(faces))
+
+
+def turned_over(stack: ContourStack) -> ContourStack:
+    """Return the stack with every loop run the other way round."""
+
+    def reversed_loop(loop: Loop) -> Loop:
+        corners = np.sort(len(loop.points) - 1 - loop.corners)
+        return replace(loop, points=frozen_floats(loop.points[::-1]), corners=frozen_ints(corners))
+
+    sections = tuple(replace(x, loops=tuple(map(reversed_loop, x.loops))) for x in stack.sections)
+    return replace(stack, sections=sections)
+
+
+def emptied(product: Any) -> Any:
+    """Return the product with nothing in it."""
+    if isinstance(product, ContourStack):
+        return replace(product, sections=())
+    if isinstance(product, LoftedSolid):
+        return replace(product, shells=())
+    return replace(product, vertices=frozen_floats(np.empty((0, 3))), faces=frozen_ints(np.empty((0, 3))))
+
+
+def opened(product: Any) -> tuple[str, Any]:
+    """Return the product with a piece missing, and what is missing."""
+    if isinstance(product, LoftedSolid):
+        shell = product.shells[0]
+        gap = replace(shell, patches=frozen_floats(shell.patches[:, :-1]))
+        return "a solid with a column of patches missing", replace(product, shells=(gap,))
+    return "a surface with a triangle missing", replace(product, faces=frozen_ints(product.faces[:-1]))
