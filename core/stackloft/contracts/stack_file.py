@@ -63,6 +63,8 @@ def _length(value: Any) -> float:
 
 
 def _lengths(value: Any) -> tuple[float, ...]:
+    if not isinstance(value, (str, list)):
+        raise ValueError('not a list of lengths, as "0,5.6,11.1mm"')  # noqa: TRY004 - pydantic gathers ValueError
     try:
         return parse_lengths(value) if isinstance(value, str) else tuple(parse_length(item) for item in value)
     except StackloftError as error:
