@@ -11,7 +11,7 @@ from stackloft.testing.phantoms.body import Field
 from stackloft.testing.phantoms.dual import STEP
 
 _ROUNDS = 60
-_CONVERGED = 2e-15
+_CONVERGED = 1e-9
 _LEVEL = 1e-30
 """Keeps a field that is constant on the plane from dividing by its slope."""
 

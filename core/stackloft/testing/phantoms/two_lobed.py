@@ -15,47 +15,56 @@ from stackloft.testing.phantoms.star_body import direction
 
 
 def two_lobed(
-    a: float = 45.0, b: float = 26.0, c: float = 30.0, pinch: float = 0.45, neck: float = 0.3
+    a: float = 45.0,
+    b: float = 26.0,
+    c: float = 30.0,
+    pinch: float = 0.42,
+    neck: float = 0.22,
+    fade: float = 0.6,
 ) -> Body:
-    """Return x²/a² + (y/(b·w(x)))² + z²/c² ≤ 1 with w(x) = 1 − pinch·exp(−(x/(neck·a))²).
+    """Return x²/a² + (y/(b·w))² + z²/c² ≤ 1 with w(x, z) = 1 − pinch·exp(−(x/(neck·a))² − (z/(fade·c))⁴).
 
-    The lobes lie at ±x, in the picture: seen along z the section at mid-height is a peanut, concave at
-    the waist; towards both ends it lies within the neck and is convex. Every section is one loop,
-    star-shaped about x = y = 0. V = π·bc·∫ w·(1 − x²/a²) dx in closed form; S by quadrature.
+    The lobes lie at ±x, in the picture. Seen along z the sections at mid-height are peanuts, concave at a
+    waist of 65 % of the lobes; towards both ends the pinch fades and they are convex. Every section is
+    one loop, star-shaped about x = y = 0. V and S by quadrature.
 
     Parameters
     ----------
     a, b, c : float
         Semi-axes without the pinch, mm.
     pinch : float
-        0 to 0.7; how much of the width is missing at x = 0.
+        0 to 0.7; how much of the width is missing in the middle.
     neck : float
         0.1 to 1; half-length of the waist over a.
+    fade : float
+        0.3 to 2; height over c at which the waist has nearly gone.
 
     Examples
     --------
-    >>> two_lobed(3, 2, 1, pinch=0).volume / np.pi
+    >>> round(two_lobed(3, 2, 1, pinch=0).volume / np.pi, 12)
     8.0
     """
     positive(a=a, b=b, c=c)
     within(0, 0.7, pinch=pinch)
     within(0.1, 1, neck=neck)
+    within(0.3, 2, fade=fade)
 
-    def width(x: Array) -> Array:
-        w: Array = b * (1 - pinch * np.exp(-((x / (neck * a)) ** 2)))
+    def width(x: Array, z: Array) -> Array:
+        w: Array = b * (1 - pinch * np.exp(-((x / (neck * a)) ** 2) - (z / (fade * c)) ** 4))
         return w
 
     def surface(longitude: Array, latitude: Array) -> Array:
         d = direction(longitude, latitude)
-        return np.stack([a * d[0], width(a * d[0]) * d[1], c * d[2]])
+        return np.stack([a * d[0], width(a * d[0], c * d[2]) * d[1], c * d[2]])
 
     patches = (Patch(surface, (-np.pi, np.pi), (-np.pi / 2, np.pi / 2), ("periodic", "gauss")),)
+    volume, area = figures(patches)
     return Body(
-        fields=(lambda X: (X[0] / a) ** 2 + (X[1] / width(X[0])) ** 2 + (X[2] / c) ** 2 - 1,),
+        fields=(lambda X: (X[0] / a) ** 2 + (X[1] / width(X[0], X[2])) ** 2 + (X[2] / c) ** 2 - 1,),
         patches=patches,
-        volume=np.pi * a * b * c * (4 / 3 - pinch * _gauss_moment(neck)),
-        area=figures(patches)[1],
-        parameters={"a": a, "b": b, "c": c, "pinch": pinch, "neck": neck},
+        volume=volume,
+        area=area,
+        parameters={"a": a, "b": b, "c": c, "pinch": pinch, "neck": neck, "fade": fade},
     )
 
 
