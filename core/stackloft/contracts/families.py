@@ -61,7 +61,11 @@ class Reader(Protocol):
 
 @runtime_checkable
 class Segmenter(Protocol):
-    """Turns a SliceStack into a Segmentation."""
+    """Turns a SliceStack into a Segmentation.
+
+    A class variable ``general = True`` marks one that fits any slices; it is taken when several
+    segmenters are installed and nobody names one.
+    """
 
     api: ClassVar[str]
     accepts: ClassVar[tuple[type, ...]]

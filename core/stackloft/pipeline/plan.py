@@ -14,6 +14,9 @@ from stackloft.pipeline.layers import Place, check_addresses, check_preset, opti
 from stackloft.pipeline.request import ALL_METHODS, DEFAULT_METHOD, MeasureRequest
 from stackloft.registry import Loaded, catalogue, choose_reader, find, instantiate, load
 
+OWN = "stackloft"
+"""This distribution: its default method stays the primary one of ``all`` when a stranger uses its name."""
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -101,8 +104,10 @@ def method_names(method: str) -> tuple[str, ...]:
                 "not a method", where="--method", found=repr(method), expected="NAME, NAME,NAME or all"
             )
         return names
-    known = [x.qualified if x.clash else x.name for x in catalogue("recipe")]
-    return tuple(sorted(known, key=lambda name: (name != DEFAULT_METHOD, name)))
+    known = sorted(
+        catalogue("recipe"), key=lambda x: (x.name != DEFAULT_METHOD, x.distribution != OWN, x.name)
+    )
+    return tuple(x.qualified if x.clash else x.name for x in known)
 
 
 def _choose_segmenter(request: MeasureRequest, kinds: tuple[type, ...]) -> Loaded | None:

@@ -18,7 +18,6 @@ from stackloft.pipeline.chain_check import ladder
 from stackloft.pipeline.plan import Plan, Step
 from stackloft.pipeline.progress import Progress
 from stackloft.registry import RUN, Loaded, failure, plain
-from stackloft.sectioning.contour_sink import ContourSink, feed
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +88,9 @@ class Workbench:
 
     def _trace(self, item: Item) -> ContourStack:
         """Run the one decoding pass; the caller's sinks see the slices of the plan's own segmentation."""
+        # tracing needs OpenCV, which contours and surfaces given as such can do without
+        from stackloft.sectioning.contour_sink import ContourSink, feed  # noqa: PLC0415
+
         segmentation: Segmentation = item.value
         first = not any(name.startswith("contours(") for name in self.made)
         sinks = (ContourSink(), *(self._sinks if first else ()), _Teller(self._progress))

@@ -19,7 +19,8 @@ def find(family: str, name: str, *, prefer: str | None = None) -> Loaded:
     name : str
         Its name, or ``distribution:name`` when two distributions use the same one.
     prefer : str, optional
-        Distribution that wins a clash: a recipe's steps mean its own distribution's plug-ins.
+        Distribution that wins a clash: a recipe's steps mean its own distribution's plug-ins. A
+        quarantined plug-in always loses one.
 
     Raises
     ------
@@ -31,7 +32,13 @@ def find(family: str, name: str, *, prefer: str | None = None) -> Loaded:
     >>> find("recipe", "loft").plugin.steps[-1]
     'integrator.surface-gauss'
     """
-    outcome = load(locate(family, name, prefer=prefer))
+    candidates = _candidates(family, name, prefer)
+    if len(candidates) > 1:
+        healthy = [x for x in map(load, candidates) if isinstance(x, Loaded)]
+        if len(healthy) != 1:
+            raise _ambiguous(candidates)
+        return healthy[0]
+    outcome = load(candidates[0])
     if isinstance(outcome, Quarantined):
         raise outcome.error()
     return outcome
@@ -39,6 +46,13 @@ def find(family: str, name: str, *, prefer: str | None = None) -> Loaded:
 
 def locate(family: str, name: str, *, prefer: str | None = None) -> Listing:
     """Return the listing called `name`, without importing it (errors as for `find`)."""
+    candidates = _candidates(family, name, prefer)
+    if len(candidates) > 1:
+        raise _ambiguous(candidates)
+    return candidates[0]
+
+
+def _candidates(family: str, name: str, prefer: str | None) -> list[Listing]:
     distribution, colon, bare = name.rpartition(":")
     candidates = [x for x in catalogue(family) if x.name == bare]
     if colon:
@@ -47,13 +61,7 @@ def locate(family: str, name: str, *, prefer: str | None = None) -> Listing:
         candidates = [x for x in candidates if x.distribution == prefer] or candidates
     if not candidates:
         raise _unknown(family, name)
-    if len(candidates) > 1:
-        raise PluginError(
-            f"two distributions register {family} {bare!r}",
-            found=", ".join(f"{x.distribution} {x.version}" for x in candidates),
-            fix=f"name one in full: {' or '.join(x.qualified for x in candidates)}",
-        )
-    return candidates[0]
+    return candidates
 
 
 def nearest(word: str, words: list[str]) -> str:
@@ -68,6 +76,14 @@ def nearest(word: str, words: list[str]) -> str:
     if close:
         return f"did you mean {' or '.join(close)}?"
     return f"there is {', '.join(words)}" if words else "there is none"
+
+
+def _ambiguous(candidates: list[Listing]) -> PluginError:
+    return PluginError(
+        f"several distributions register {candidates[0].family} {candidates[0].name!r}",
+        found=", ".join(f"{x.distribution} {x.version}" for x in candidates),
+        fix=f"name one in full: {' or '.join(x.qualified for x in candidates)}",
+    )
 
 
 def _unknown(family: str, name: str) -> PluginError:
