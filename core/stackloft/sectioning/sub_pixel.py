@@ -28,6 +28,10 @@ REACH = 2
 
 _BEYOND = 0.25  # how far past the two pixels the refined crossing may lie
 _DOMINANCE = 0.8
+_OFF_MIDDLE = (
+    0.15,
+    0.25,
+)  # of the step: the three-pixel means are trusted up to the first, not beyond the second
 _FEWEST = 16  # crossings below which a line is too small to be refined
 
 
@@ -77,12 +81,18 @@ def crossing_points(line: Crossings, field: FloatArray) -> FloatArray:
 
 
 def _refined(samples: list[FloatArray], plain: FloatArray) -> FloatArray:
-    """Return the crossing of the three-pixel means, or the plain one where the step is not clean."""
+    """Return the crossing of the three-pixel means, or the plain one where the step is not clean.
+
+    Where the level is far from the middle of the step, as some textbook thresholds are, averaging would
+    widen the step and carry the crossing off; the plain one is then taken, with a soft transition.
+    """
     a, b, c, d = samples
     clean = (a * b > 0) & (c * d > 0)
     refined = np.divide(a + b + c, a - d, out=plain.copy(), where=clean)
+    off_middle = np.divide(np.abs(a + d) / 2, np.abs(a - d), out=np.ones_like(a), where=clean)
+    share = np.clip((_OFF_MIDDLE[1] - off_middle) / (_OFF_MIDDLE[1] - _OFF_MIDDLE[0]), 0.0, 1.0)
     near = (refined >= -_BEYOND) & (refined <= 1 + _BEYOND)
-    return np.where(near, refined, plain)
+    return np.where(near, share * refined + (1 - share) * plain, plain)
 
 
 def _runs_across(
