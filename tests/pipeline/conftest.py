@@ -95,6 +95,12 @@ class AreaOnly(Plugin):
     def integrate(self, product):
         return Integral(None, 7.0)
 
+@dataclass(frozen=True)
+class MeshVolume(Plugin):
+    accepts: ClassVar[tuple[type, ...]] = (TriMesh,)
+    def integrate(self, product):
+        return Integral(5.0, 6.0)
+
 def fails(error):
     @dataclass(frozen=True)
     class Fails(Plugin):
@@ -117,6 +123,7 @@ prism = Recipe(("reconstructor.prism", "integrator.product"), "prism")
 long_prism = Recipe(
     ("reconstructor.prism", "integrator.product"), "long", {"reconstructor.prism": {"stretch": 2.0}}
 )
+surface = Recipe(("integrator.mesh-volume",), "of a surface")
 plain = Recipe(("integrator.plain",), "volume alone")
 area_only = Recipe(("integrator.area-only",), "area alone")
 refuses = Recipe(("integrator.refuses",), "refuses")
@@ -128,13 +135,25 @@ upside_down = Recipe(("integrator.product", "reconstructor.prism"), "wrong order
 endless = Recipe(("reconstructor.prism",), "no integrator")
 typo = Recipe(("integrator.plain",), "", {"integrator.plain": {"ruel": 1}})
 """
-METHODS = ("prism", "long_prism", "plain", "area_only", "refuses", "crashes", "text", "nan", "zero")
+METHODS = (
+    "prism",
+    "long_prism",
+    "plain",
+    "surface",
+    "area_only",
+    "refuses",
+    "crashes",
+    "text",
+    "nan",
+    "zero",
+)
 NAMES = {
     "readers": {"disk": "DiskReader", "mesh": "MeshReader"},
     "reconstructors": {"prism": "Prism"},
     "integrators": {
         "product": "Product",
         "plain": "Plain",
+        "mesh-volume": "MeshVolume",
         "area-only": "AreaOnly",
         "refuses": "Refuses",
         "crashes": "Crashes",

@@ -1,6 +1,7 @@
 """The route of slices: one decoding pass feeds every sink, and crashes are blamed on their plug-in."""
 
 import re
+import weakref
 
 import numpy as np
 import pytest
@@ -90,6 +91,26 @@ def test_every_slice_is_decoded_once_for_all_methods_and_sinks():
     expected = [len(RADII), *((k, (90, 100)) for k in range(len(RADII)))]
     assert outcome.sink_products == (expected, expected)
     assert sorted(decoded) == list(range(len(RADII)))
+
+
+def test_few_pictures_are_in_memory_at_a_time():
+    m, seen, alive = 40, [], []
+
+    class Picture(np.ndarray):
+        """An array that can be watched."""
+
+    def decode(k):
+        picture = disk(15.0).view(Picture)
+        seen.append(weakref.ref(picture))
+        alive.append(sum(reference() is not None for reference in seen))
+        return picture
+
+    spacing = np.full((m, 2), PIXEL)
+    names = tuple(f"s{k}" for k in range(m))
+    stack = SliceStack(decode, names, (90, 100), PITCH * np.arange(m), spacing, SectionKind.FACE)
+    measure(MeasureRequest("m", method="cavalieri"), product=stack)
+    assert len(alive) == m
+    assert max(alive) <= 5
 
 
 def test_slices_in_memory_have_a_fingerprint_of_their_own(folder):

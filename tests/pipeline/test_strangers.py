@@ -125,6 +125,17 @@ def slices():
     )
 
 
+def test_slices_without_a_segmenter_name_the_broken_one(tmp_path, slices, monkeypatch):
+    monkeypatch.setattr("stackloft.pipeline.plan._choose_segmenter", lambda request, kinds: None)
+    groups = {"stackloft.segmenters": {"ruin": "ruin_seg:S"}}
+    message = r"into Segmentation \(a segmenter\); quarantined: segmenter.ruin \(ImportError: no cv2"
+    with (
+        installed(tmp_path, "ruin-seg", groups, {"ruin_seg": "raise ImportError('no cv2')"}),
+        pytest.raises(PluginError, match=message),
+    ):
+        make_plan(MeasureRequest("body"), slices)
+
+
 def test_a_product_is_measured_as_what_it_is():
     stack = contour_stack(1)
     assert isinstance(measure(MeasureRequest("body"), product=stack).contours, ContourStack)

@@ -58,7 +58,8 @@ def _missing(method: str, rungs: Sequence[type], step: Loaded, fitting: tuple[st
     if bridge:
         fix = f"{bridge} makes that step; use a method that contains it before {step.key}"
     else:
-        fix = f"missing is a plug-in that turns {have} into {need}"
+        step_missing = "Segmentation (a segmenter)" if rungs and rungs[-1] is SliceStack else need
+        fix = f"missing is a plug-in that turns {have} into {step_missing}{_quarantined()}"
     if fitting:
         fix += f"; methods that start from {have}: {', '.join(fitting)}"
     return PluginError(f"method {method}: {step.key} cannot take {have}", expected=need, fix=fix)
@@ -77,6 +78,13 @@ def _bridge(rungs: Iterable[type], needed: tuple[type, ...]) -> str | None:
         if takes and any(issubclass(kind, needed) for kind in outcome.plugin.produces):
             return outcome.key
     return None
+
+
+def _quarantined() -> str:
+    """Return the plug-ins that might have made the step but are broken, with their reasons."""
+    outcomes = [load(x) for x in catalogue() if x.family not in {"reader", "writer", "recipe"}]
+    broken = [f"{x.listing.key} ({x.reason})" for x in outcomes if isinstance(x, Quarantined)]
+    return f"; quarantined: {', '.join(broken)}" if broken else ""
 
 
 def _methods_from(kinds: Sequence[type], segmenter: Loaded | None) -> tuple[str, ...]:
