@@ -73,18 +73,18 @@ def measure(
     bench = Workbench(plan, reading.product, listener, (*own, *sinks))
     rows, measured = _run_methods(plan.methods, bench)
     sections, skipped = _sections(bench)
-    objects = (_measurement(rows, measured, sections, reading.product),)
+    body = _measurement(rows, measured, sections, reading.product)
     products = _in_order(measured, bench)
+    taken, given = bench.sink_products[: len(own)], bench.sink_products[len(own) :]
     seconds = {**reading.seconds, **bench.stages, "total": time.perf_counter() - start}
-    digest = bench.sink_products[0] if own and bench.sink_products else reading.digest
     result = Result(
-        source={"path": str(request.source), "reader": reading.name, "digest": digest},
-        objects=objects,
+        source={"path": str(request.source), "reader": reading.name, "digest": (*taken, reading.digest)[0]},
+        objects=(body,),
         warnings=_warnings(plan, products, skipped),
         recipe=recipe_of(plan, segmented=any(isinstance(item, Segmentation) for item in products)),
         provenance=provenance_of(plan, seconds),
     )
-    return Outcome(result, products, bench.sink_products[len(own) :])
+    return Outcome(result, products, given)
 
 
 @dataclass(frozen=True, slots=True)
