@@ -49,7 +49,7 @@ def potato(
     def distance(d: Array) -> Array:
         relief: Array = np.ones_like(d[0])
         for c, y in zip(coefficients, harmonics(d, degree), strict=True):
-            relief = relief + c @ y
+            relief = relief + np.einsum("k,kn->n", c, y)
         return radius * relief
 
     return star_body(
