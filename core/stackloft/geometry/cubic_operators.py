@@ -5,6 +5,7 @@ Written as matrices, one small solve serves every coordinate of every column of 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +42,14 @@ def periodic_tangents(step: FloatArray) -> FloatArray:
     np.add.at(right, (i, (i - 1) % n), -3.0 * after / before)
     np.add.at(right, (i, (i + 1) % n), 3.0 * before / after)
     return np.asarray(np.linalg.solve(left, right))
+
+
+@lru_cache(maxsize=32)
+def even_tangents(count: int) -> FloatArray:
+    """Return `periodic_tangents` for `count` unit steps, solved once and read-only."""
+    tangents = periodic_tangents(np.ones(count))
+    tangents.setflags(write=False)
+    return tangents
 
 
 def open_tangents(nodes: FloatArray, given: tuple[bool, bool] = (False, False)) -> FloatArray:
@@ -102,7 +111,7 @@ def broken_periodic_tangents(step: FloatArray, breaks: BoolArray) -> tuple[Float
     """
     n = len(step)
     if not breaks.any():
-        both = periodic_tangents(step)
+        both = even_tangents(n) if (step == 1.0).all() else periodic_tangents(step)
         return both, both
     arriving, leaving = np.zeros((n, n)), np.zeros((n, n))
     marks = np.flatnonzero(breaks)

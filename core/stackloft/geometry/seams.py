@@ -66,17 +66,9 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
     >>> solve_phases(stack, steps, [np.array([]), np.array([])]).phases.round(3)
     array([0.   , 0.125])
     """
-    score = _scores(points, tangents, corners)
-    unsure = _turns_unsure(tangents)
-    steps, tied = [], []
-    twist = 0.0
-    for pair, row in enumerate(score):
-        twist, is_tied = _best_step(row, twist)
-        steps.append(twist)
-        if is_tied or unsure[pair]:
-            tied.append(pair)
+    steps, tied = _best_steps(_scores(points, tangents, corners))
     phases = np.concatenate([[0.0], np.cumsum(steps)])
-    return SeamPhases(phases, np.array(tied, dtype=np.int64))
+    return SeamPhases(phases, np.flatnonzero(tied | _turns_unsure(tangents)))
 
 
 def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
@@ -129,17 +121,23 @@ def _corner_signal(corners: list[FloatArray], samples: int) -> ComplexArray:
     return rows.astype(np.complex128)
 
 
-def _best_step(score: FloatArray, twist: float) -> tuple[float, bool]:
-    """Return the best shift as a fraction in (-½, ½], and whether another fits almost as well."""
-    before, after = np.roll(score, 1), np.roll(score, -1)
-    peaks = np.flatnonzero((score >= before) & (score > after))
-    if len(peaks) == 0:
-        return 0.0, False
-    curvature = before[peaks] - 2.0 * score[peaks] + after[peaks]
-    shift = 0.5 * (before[peaks] - after[peaks]) / np.where(curvature < 0, curvature, -1.0)
-    fraction = ((peaks + np.clip(shift, -0.5, 0.5)) / len(score) + 0.5) % 1.0 - 0.5
-    best = score[peaks].max()
-    near = fraction[score[peaks] >= best - TIE]
-    chosen = near[np.argmin(np.round(np.abs(near - twist), 9))]
-    apart = np.abs((near - chosen + 0.5) % 1.0 - 0.5)
-    return float(chosen), bool((apart > APART).any())
+def _best_steps(score: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return each pair's best shift as a fraction in [-½, ½), and whether another fits almost as well."""
+    before, after = np.roll(score, 1, axis=1), np.roll(score, -1, axis=1)
+    peaks = (score >= before) & (score > after)
+    best = np.where(peaks, score, -np.inf).max(axis=1, initial=-np.inf, keepdims=True)
+    near = peaks & (score >= best - TIE)
+    curvature = before - 2.0 * score + after
+    shift = 0.5 * (before - after) / np.where(curvature < 0.0, curvature, -1.0)
+    samples = score.shape[1]
+    fraction = ((np.arange(samples) + np.clip(shift, -0.5, 0.5)) / samples + 0.5) % 1.0 - 0.5
+    steps = fraction[np.arange(len(score)), near.argmax(axis=1)]
+    steps[~near.any(axis=1)] = 0.0
+    tied = np.zeros(len(score), dtype=bool)
+    for pair in np.flatnonzero(near.sum(axis=1) > 1):
+        candidates = fraction[pair, near[pair]]
+        twist = steps[pair - 1] if pair else 0.0
+        steps[pair] = candidates[np.argmin(np.round(np.abs(candidates - twist), 9))]
+        apart = np.abs((candidates - steps[pair] + 0.5) % 1.0 - 0.5)
+        tied[pair] = (apart > APART).any()
+    return steps, tied

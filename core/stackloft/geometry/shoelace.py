@@ -26,8 +26,8 @@ def polygon_area(points: FloatArray) -> float:
     >>> polygon_area(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
     2.0
     """
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    x, y = (points - points[0]).T  # the first vertex is the origin, so the closing edge adds nothing
+    return 0.5 * float(x[:-1] @ y[1:] - y[:-1] @ x[1:])
 
 
 def polygon_perimeter(points: FloatArray) -> float:

@@ -1,7 +1,7 @@
 """A bicubic skin through sections: cubic along each loop × cubic across sections.
 
 The section curves lie on the skin exactly. Across sections the parameter is the arc length of the
-columns, averaged over the loop: started from chords and refined (Piegl & Tiller 1997, The NURBS Book,
+columns, averaged over the loop: started from chords and refined once (Piegl & Tiller 1997, The NURBS Book,
 §10.3); position along the axis is never a parameter.
 """
 
@@ -18,7 +18,8 @@ from stackloft.geometry.cubic_operators import broken_open_tangents, broken_peri
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-REFINEMENTS = 3
+REFINEMENTS = 1
+"""Once from chords to arc length: more moves volume and area by less than 2e-5."""
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(5)
 _SLOPES = bernstein_slope(0.5 * (_GAUSS_X + 1.0))
 _WEIGHTS = 0.5 * _GAUSS_W
@@ -73,19 +74,25 @@ def section_beziers(points: FloatArray, corners: BoolArray) -> FloatArray:
 
     Every row has the same, even parameter steps, so that the skin is one tensor product.
     """
-    n, columns, d = points.shape
-    step = np.ones(columns)
-    result = np.empty((n, columns, 4, d))
+    if not corners.any():
+        return _closed_beziers(points, corners[0])
+    result = np.empty((*points.shape[:2], 4, points.shape[2]))
     patterns, which = np.unique(corners, axis=0, return_inverse=True)
     for k, pattern in enumerate(patterns):
         chosen = np.flatnonzero(which.ravel() == k)
-        arriving, leaving = broken_periodic_tangents(step, pattern)
-        p = points[chosen]
-        hermite = np.stack(
-            [p, np.roll(p, -1, axis=1), leaving @ p, np.roll(arriving @ p, -1, axis=1)], axis=2
-        )
-        result[chosen] = np.matmul(HERMITE_TO_BEZIER, hermite)
+        result[chosen] = _closed_beziers(points[chosen], pattern)
     return result
+
+
+def _closed_beziers(points: FloatArray, breaks: BoolArray) -> FloatArray:
+    """Return the Bézier segments of rows that are broken at the same points."""
+    arriving, leaving = broken_periodic_tangents(np.ones(points.shape[1]), breaks)
+    hermite = np.empty((*points.shape[:2], 4, points.shape[2]))
+    hermite[:, :, 0], hermite[:, :, 2] = points, leaving @ points
+    incoming = hermite[:, :, 2] if arriving is leaving else arriving @ points
+    hermite[:, :-1, 1], hermite[:, -1, 1] = points[:, 1:], points[:, 0]
+    hermite[:, :-1, 3], hermite[:, -1, 3] = incoming[:, 1:], incoming[:, 0]
+    return np.asarray(np.matmul(HERMITE_TO_BEZIER, hermite))
 
 
 def arc_length_nodes(rows: Rows) -> FloatArray:
