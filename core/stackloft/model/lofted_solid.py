@@ -29,7 +29,7 @@ class Shell:
     """One closed tube of patches with its two ends; outward, so an inner shell is a cavity."""
 
     patches: FloatArray
-    """(rows, columns, 4, 4, 3) mm: Bézier control points, [row, column, v, u]; columns close on themselves."""
+    """(rows, columns, 4, 4, 3) mm: Bézier control points [row, column, v, u]; columns close on themselves."""
     plane_ends: tuple[bool, bool]
     """True where the end is a plane face bounded by the rim; False where it is a pole."""
 
