@@ -48,7 +48,7 @@ if [ "$(version_of "$folder/bin/python")" != "$version" ]; then
     "$python" -m venv --clear "$folder"
 fi
 
-say "installing the locked packages of requirements/py$version.txt (some 700 MB on the disk; once)"
+say "installing the locked packages of requirements/py$version.txt (about 2 GB on the disk; once)"
 pip="$folder/bin/python -m pip --disable-pip-version-check --quiet"
 $pip install --require-hashes --only-binary :all: --requirement "$here/py$version.txt"
 $pip install --no-deps --no-build-isolation --editable "$here/.."

@@ -1,8 +1,8 @@
 """The command answers at once: nothing heavy is imported for help."""
 
+import resource
 import subprocess
 import sys
-import time
 from importlib.metadata import version
 
 import pytest
@@ -32,11 +32,13 @@ def test_help_imports_nothing_heavy(arguments, heavy):
 
 
 def test_help_takes_less_than_three_tenths_of_a_second(stackloft):
+    """Processor time, for the clock on the wall also counts what else the machine does."""
     seconds = []
     for _ in range(5):
-        start = time.perf_counter()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         assert stackloft("--help").returncode == 0
-        seconds.append(time.perf_counter() - start)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds.append(after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
     assert min(seconds) < 0.3, seconds
 
 

@@ -68,7 +68,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     """
     from stackloft.cli.measure import Output, request_of, run
     from stackloft.registry import parse_settings
-    from stackloft.report.run_folder import split_settings
+    from stackloft.report.chosen_writer import split_settings
 
     flags = {
         "pixel_size": pixel_size,

@@ -17,7 +17,7 @@ from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.recipe_file import load_recipe
 from stackloft.pipeline.request import MeasureRequest
 from stackloft.pipeline.run import measure
-from stackloft.registry.build import build
+from stackloft.report.chosen_writer import ChosenWriter, solid_writers
 from stackloft.report.run_folder import RunFolder
 from stackloft.report.thumbnails import ThumbnailSink
 from stackloft.report.whole_file import writable_folder
@@ -101,9 +101,8 @@ def _folder(output: Output, source: Path) -> RunFolder | None:
                 where=f"--out {output.folder}",
                 fix="give another folder",
             )
-        plan = RunFolder.plan(output.folder, output.solids, output.writer_settings)
-        writable_folder(output.folder)
-        return plan
+        writers = solid_writers(output.solids, output.writer_settings)
+        return RunFolder(writable_folder(output.folder), writers)
     if output.solids:
         raise UsageError("needs a folder", where="--write", fix="give --out DIR as well")
     return None
@@ -117,7 +116,7 @@ def _unit_of(source: Path) -> str:
 def _show(outcome: Outcome, files: list[Path], output: Output, unit: str) -> None:
     result = outcome.result
     if output.json:
-        build("writer", "json").write(result, sys.stdout.buffer)
+        ChosenWriter.of("json").write(result, sys.stdout.buffer)
         sys.stdout.buffer.flush()
     if not output.quiet:
         show_result(console(stderr=output.json), result, files, unit)
