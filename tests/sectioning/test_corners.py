@@ -96,7 +96,7 @@ def test_a_20_mm_square_at_0_3_mm(degrees, blur):
     loop = with_corners(photographed(turned(half * SQUARE, degrees) + CENTRE, blur), 1.0)
     found = turned(loop.points[loop.corners] - CENTRE, -degrees)
     assert np.sort(np.arctan2(*found.T)) == pytest.approx(np.radians([-135, -45, 45, 135]), abs=0.01)
-    assert np.abs(np.abs(found) - half).max() < 0.1
+    assert np.abs(np.abs(found) - half).max() < (0.15 if blur else 0.03)
     assert loop.signed_area == pytest.approx(4 * half**2, rel=3e-4)
 
 

@@ -61,7 +61,7 @@ def area(picture, **options):
 )
 def test_half_way_level_places_the_boundary(plate, flesh, blur):
     """A blur of σ moves the half-way line by σ²/2R towards the centre of curvature: πσ² in all."""
-    assert area(photo(plate, flesh, blur=blur)) == pytest.approx(AREA - np.pi * blur**2, rel=3e-4)
+    assert area(photo(plate, flesh, blur=blur)) == pytest.approx(AREA - np.pi * blur**2, rel=5e-4)
 
 
 def test_the_level_is_half_way_though_otsus_may_lie_anywhere():

@@ -3,17 +3,19 @@ r"""The level half-way between a body's edge and the background beside it.
 ::
 
     grey
-      |######\                 b: median of the band inside
+      |######\                 b: mean of the band inside
       |       \
       |--------*-----------    level = (a + b) / 2
       |         \
-      |          \.......      a: median of the band outside
+      |          \.......      a: mean of the band outside
       +------------------- across the boundary
-         [ b ]    [ a ]        bands, 2 to 4 pixels from it
+         [ b ]    [ a ]        bands, 1 to 2 pixels from it
 
 A camera's blur is symmetric, so the boundary of a straight edge lies where the grey level is half-way,
 whatever the blur; Otsu's threshold may lie anywhere between the two peaks, and moves the boundary with
-it. (Half-maximum edge definition, as in ISO 12233 edge profiles and in coordinate metrology by CT,
+it. The bands are close to the boundary, and equally so, because what counts is the grey of the body's edge,
+be it skin or flesh: a step blurred alike on both sides is half-way at the same place however little of it
+the bands see. (Half-maximum edge definition, as in ISO 12233 edge profiles and in coordinate metrology by CT,
 VDI/VDE 2630-1.2 "ISO 50 %".)
 """
 
@@ -28,9 +30,10 @@ from numpy.typing import NDArray
 from stackloft_plugins.segmenters.body_window import Mask, main_body
 from stackloft_plugins.segmenters.grey import Grey
 
-_NEAR, _FAR = 2, 4  # pixels: the bands lie between these distances from the boundary
-_ROUNDS = 4
-_SETTLED = 0.002  # of the contrast
+_NEAR, _FAR = 1, 2  # pixels: the bands lie between these distances from the boundary
+_ROUNDS = 8
+_SETTLED = 0.001  # of the contrast
+_STEEPEST = 0.9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +59,10 @@ class Edge:
 
 
 def half_way_edge(grey: Grey, level: float) -> Edge | None:
-    """Return the edge of the largest object, its level settled half-way.
+    """Return the edge of the largest object, its level settled half-way (secant iteration).
+
+    On a blurred edge the bands move along with the level they are to set, so that plain repetition would
+    creep towards the half-way level.
 
     Parameters
     ----------
@@ -77,15 +83,21 @@ def half_way_edge(grey: Grey, level: float) -> Edge | None:
     >>> half_way_edge(grey, 30.0).level
     70.0
     """
-    edge = None
+    edge = edge_at(grey, level)
+    if edge is None:
+        return None
+    last, last_off, slope = level, edge.level - level, 0.0
     for _ in range(_ROUNDS):
-        measured = edge_at(grey, level)
-        if measured is None:
-            return edge
-        edge = measured
-        if abs(edge.level - level) <= _SETTLED * abs(edge.contrast):
+        if abs(last_off) <= _SETTLED * abs(edge.contrast):
             break
-        level = edge.level
+        level = last + last_off / (1.0 - slope)
+        nearer = edge_at(grey, level)
+        if nearer is None:
+            break
+        edge = nearer
+        off = edge.level - level
+        slope = float(np.clip(1.0 + (off - last_off) / (level - last), 0.0, _STEEPEST))
+        last, last_off = level, off
     return edge
 
 
@@ -96,14 +108,21 @@ def edge_at(grey: Grey, level: float) -> Edge | None:
     if not inner.any() or not outer.any():
         return None
     within, beyond = grey[inner], grey[outer]
-    background = float(np.median(beyond))
+    background = _middle_mean(beyond)
     spread = 1.4826 * float(np.median(np.abs(beyond - background)))
-    return Edge(float(np.median(within)), background, spread, mask)
+    return Edge(_middle_mean(within), background, spread, mask)
+
+
+def _middle_mean(values: Grey) -> float:
+    """Return the mean of the middle half: robust as the median, but not bound to whole grey levels."""
+    quarter = len(values) // 4
+    ordered = np.sort(values)
+    return float(ordered[quarter : len(values) - quarter].mean(dtype=np.float64))
 
 
 def inside_band(mask: Mask) -> NDArray[np.bool_]:
-    """Return the pixels 2 to 4 px inside; for a body too small for that, its innermost ones."""
-    for near in (_NEAR, 1, 0):
+    """Return the pixels 1 to 2 px inside; for a body too small for that, its outermost ones."""
+    for near in (_NEAR, 0):
         core = cv2.erode(mask, _disc(near), borderType=cv2.BORDER_CONSTANT, borderValue=1) if near else mask
         if core.any():
             deep = cv2.erode(mask, _disc(_FAR), borderType=cv2.BORDER_CONSTANT, borderValue=1)
@@ -112,7 +131,7 @@ def inside_band(mask: Mask) -> NDArray[np.bool_]:
 
 
 def outside_band(mask: Mask) -> NDArray[np.bool_]:
-    """Return the pixels 2 to 4 px outside."""
+    """Return the pixels 1 to 2 px outside."""
     return np.asarray(cv2.dilate(mask, _disc(_FAR)) > cv2.dilate(mask, _disc(_NEAR)))
 
 
