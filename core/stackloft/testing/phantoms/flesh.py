@@ -55,7 +55,7 @@ def plain(
     shape = depth.shape
     mottle = texture * (5 * relief(rng, shape, 6) + 3 * relief(rng, shape, 1.5))
     colour = _rgb(176, 128, 96) + mottle + 0 * body
-    return _blend(colour, _rgb(156, 113, 84), 0.95 * _skin(depth, rim))
+    return _blend(colour, _rgb(176, 116, 72), 0.95 * _skin(depth, rim))
 
 
 def apple(
