@@ -123,9 +123,9 @@ def _resampled(points: FloatArray, along: FloatArray, count: int) -> FloatArray:
 def _sides(samples: FloatArray, gap: float, window: float) -> _Sides:
     """Fit both sides of every sample."""
     reach = np.arange(round(gap / STEP), round((gap + window) / STEP) + 1)
-    here = np.arange(len(samples))[:, None]
-    ahead = _fitted(samples[(here + reach) % len(samples)], STEP * reach.astype(np.float64))
-    behind = _fitted(samples[(here - reach) % len(samples)], STEP * reach.astype(np.float64))
+    here = np.arange(len(samples))
+    ahead = _fitted(samples[(here + reach[:, None]) % len(samples)], STEP * reach.astype(np.float64))
+    behind = _fitted(samples[(here - reach[:, None]) % len(samples)], STEP * reach.astype(np.float64))
     apex = _meeting(ahead.point, ahead.direction, behind.point, behind.direction)
     return _Sides(
         turn=_angle(-behind.direction, ahead.direction),
@@ -152,17 +152,18 @@ def _fitted(side: FloatArray, u: FloatArray) -> _Fit:
 
     Parameters
     ----------
-    side : ndarray, (n, m, 2)
+    side : ndarray, (m, n, 2)
         m points of the side of each of n samples.
     u : ndarray, (m)
         Distance of these from the sample, along the loop.
     """
     basis = np.vander(u, 3, increasing=True)
     solve, straight = np.linalg.pinv(basis), np.linalg.pinv(basis[:, :2])
-    bent = np.einsum("cm,nmk->cnk", solve, side)
-    line = np.einsum("cm,nmk->cnk", straight, side)
-    left = np.einsum("lm,nmk->nlk", np.eye(len(u)) - basis @ solve, side)
-    roughness = np.sqrt(np.sum(left**2, axis=(1, 2)) / (len(u) - 3))
+    flat = side.reshape(len(u), -1)
+    bent = (solve @ flat).reshape(3, -1, 2)
+    line = (straight @ flat).reshape(2, -1, 2)
+    left = ((np.eye(len(u)) - basis @ solve) @ flat).reshape(len(u), -1, 2)
+    roughness = np.sqrt(np.sum(left**2, axis=(0, 2)) / (len(u) - 3))
     spread = roughness * np.linalg.norm(solve[2])
     is_bent = (np.linalg.norm(bent[2], axis=1) > _SIGNIFICANT * spread)[:, None]
     return _Fit(np.where(is_bent, bent[0], line[0]), np.where(is_bent, bent[1], line[1]), line[1], roughness)
