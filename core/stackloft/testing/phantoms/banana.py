@@ -48,6 +48,7 @@ def banana(
     within(1, 100, bend=bend)
     within(0, 0.5, taper=taper)
     within(0.5, 1.5, roundness=roundness)
+    given = {"length": length, "thickness": thickness, "bend": bend, "taper": taper, "roundness": roundness}
     half_angle, half = np.radians(bend) / 2, thickness / 2
     arc = length / 2 / half_angle
     within(0, 1.5 * arc, thickness=thickness)
@@ -71,11 +72,5 @@ def banana(
         patches,
         volume=np.pi * roundness * half**2 * length / 2 * (4 / 3 + 4 / 15 * taper**2),
         area=figures(patches)[1],
-        parameters={
-            "length": length,
-            "thickness": thickness,
-            "bend": bend,
-            "taper": taper,
-            "roundness": roundness,
-        },
+        parameters=given,
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from stackloft.testing.phantoms.body import Body, Patch, Plane
@@ -50,17 +52,6 @@ def meat(
     def place(t: Array, x: Array, y: Array) -> Array:
         return np.stack([width / 2 * x + bend * t**2, thickness / 2 * y, length * t])
 
-    def side(angle: Array, psi: Array) -> Array:
-        t = np.sin(psi)
-        reach = (
-            (1 - taper * t) * np.cos(psi) * np.sqrt(1 + t**2 / 2) * _outline(np.cos(angle), np.sin(angle), t)
-        )
-        return place(t, reach * np.cos(angle), reach * np.sin(angle))
-
-    def face(angle: Array, r: Array) -> Array:
-        reach = r * _outline(np.cos(angle), np.sin(angle), 0 * r)
-        return place(0 * r, reach * np.cos(angle), reach * np.sin(angle))
-
     def inside(X: Array) -> Array:
         t = X[2] / length
         x, y = (X[0] - bend * t**2) / (width / 2), X[1] / (thickness / 2)
@@ -69,17 +60,28 @@ def meat(
         value: Array = (rho / _outline(x / rho, y / rho, t)) ** 2 - squared
         return value
 
-    patches = (
+    patches = _patches(place, taper)
+    volume, area = figures(patches)
+    given = {"width": width, "thickness": thickness, "length": length, "taper": taper, "bend": bend}
+    return Body((inside, Plane(np.array([0.0, 0.0, -1.0]), 0.0)), patches, volume, area, parameters=given)
+
+
+def _patches(place: Callable[[Array, Array, Array], Array], taper: float) -> tuple[Patch, Patch]:
+    """Return the side (t = sin ψ removes the square root at the tip) and the plane face."""
+
+    def side(angle: Array, psi: Array) -> Array:
+        t = np.sin(psi)
+        scale = (1 - taper * t) * np.cos(psi) * np.sqrt(1 + t**2 / 2)
+        reach = scale * _outline(np.cos(angle), np.sin(angle), t)
+        return place(t, reach * np.cos(angle), reach * np.sin(angle))
+
+    def face(angle: Array, r: Array) -> Array:
+        reach = r * _outline(np.cos(angle), np.sin(angle), 0 * r)
+        return place(0 * r, reach * np.cos(angle), reach * np.sin(angle))
+
+    return (
         Patch(side, (-np.pi, np.pi), (0, np.pi / 2), ("periodic", "gauss")),
         Patch(face, (-np.pi, np.pi), (0, 1), ("periodic", "gauss")),
-    )
-    volume, area = figures(patches)
-    return Body(
-        (inside, Plane(np.array([0.0, 0.0, -1.0]), 0.0)),
-        patches,
-        volume,
-        area,
-        parameters={"width": width, "thickness": thickness, "length": length, "taper": taper, "bend": bend},
     )
 
 
