@@ -79,10 +79,12 @@ class Prism(Plugin):
 class Product(Plugin):
     accepts: ClassVar[tuple[type, ...]] = (LoftedSolid,)
     factor: float = option(1.0, "factor", gt=0)
+    limit: float | None = option(5000.0, "largest volume; none: no limit", gt=0)
 
     def integrate(self, product):
         length, area = (end.length for end in product.ends)
-        return Integral(self.factor * length * area, 2 * area)
+        volume = self.factor * length * area
+        return Integral(volume if self.limit is None else min(self.limit, volume), 2 * area)
 
 @dataclass(frozen=True)
 class Plain(Plugin):
@@ -117,7 +119,9 @@ def gives(value):
     return Gives
 
 Refuses, Crashes = fails(InputError("too thin")), fails(RuntimeError("boom"))
-GivesText, GivesNan, GivesZero = gives("text"), gives(Integral(float("nan"), 1.0)), gives(Integral(0.0, 1.0))
+GivesText, GivesNan = gives("text"), gives(Integral(float("nan"), 1.0))
+GivesZero = gives(Integral(0.0, 1.0))
+GivesMinus = gives(Integral(-3.0, 1.0))
 
 prism = Recipe(("reconstructor.prism", "integrator.product"), "prism")
 long_prism = Recipe(
@@ -130,6 +134,8 @@ refuses = Recipe(("integrator.refuses",), "refuses")
 crashes = Recipe(("integrator.crashes",), "crashes")
 text = Recipe(("integrator.gives-text",), "")
 nan = Recipe(("integrator.gives-nan",), "")
+minus = Recipe(("integrator.gives-minus",), "")
+refuses_again = Recipe(("integrator.refuses",), "the same once more")
 zero = Recipe(("integrator.gives-zero",), "")
 upside_down = Recipe(("integrator.product", "reconstructor.prism"), "wrong order")
 endless = Recipe(("reconstructor.prism",), "no integrator")
@@ -160,8 +166,12 @@ NAMES = {
         "gives-text": "GivesText",
         "gives-nan": "GivesNan",
         "gives-zero": "GivesZero",
+        "gives-minus": "GivesMinus",
     },
-    "recipes": {name.replace("_", "-"): name for name in (*METHODS, "upside_down", "endless", "typo")},
+    "recipes": {
+        name.replace("_", "-"): name
+        for name in (*METHODS, "minus", "refuses_again", "upside_down", "endless", "typo")
+    },
 }
 POINTS = {
     f"stackloft.{group}": {name: f"disk_house:{target}" for name, target in names.items()}

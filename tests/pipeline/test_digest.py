@@ -27,13 +27,15 @@ def test_place_and_dates_do_not_matter(source, tmp_path):
     assert digest_of(moved) == before
 
 
-@pytest.mark.parametrize("change", ["content", "name", "new file", "swap"])
+@pytest.mark.parametrize("change", ["content", "name", "name alone", "new file", "swap"])
 def test_contents_and_names_matter(source, change):
     before = digest_of(source)
     if change == "content":
         (source / "a.png").write_text("other")
     elif change == "name":
         (source / "a.png").rename(source / "d.png")
+    elif change == "name alone":
+        (source / "b.png").rename(source / "bb.png")
     elif change == "new file":
         (source / "e.png").write_text("")
     else:
@@ -50,6 +52,18 @@ def test_hidden_files_and_earlier_runs_do_not_matter(source):
     (source / "out").mkdir()
     (source / "out" / "measurement.json").write_text("{}")
     (source / "out" / "solid.stl").write_text("x")
+    assert digest_of(source) == before
+
+
+def test_the_order_in_which_folders_are_listed_does_not_matter(source, monkeypatch):
+    before, walk = digest_of(source), os.walk
+
+    def backwards(top):
+        for folder, folders, names in walk(top):
+            folders.sort(reverse=True)
+            yield folder, folders, sorted(names, reverse=True)
+
+    monkeypatch.setattr(os, "walk", backwards)
     assert digest_of(source) == before
 
 

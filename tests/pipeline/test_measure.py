@@ -103,6 +103,7 @@ def test_all_keeps_failures_as_rows(house, disk):
         ("text", PluginError, "returned str"),
         ("nan", PluginError, "can be true"),
         ("zero", InputError, "no volume"),
+        ("minus", PluginError, "gave no volume that can be true; found: -3"),
         ("area-only", InputError, "--method: method area-only gives no volume"),
         ("area-only,plain", InputError, "name a method that gives a volume first: --method plain,area-only"),
         ("prizm", PluginError, "no recipe is called 'prizm'; fix: did you mean prism"),
@@ -122,6 +123,12 @@ def test_a_second_method_s_failure_is_a_row(house, disk):
     assert rows["plain"].error is None
     assert "boom" in rows["crashes"].error
     assert rows["refuses"].volume is None
+
+
+def test_what_failed_once_is_not_tried_again(house, disk):
+    rows = measure(ask(disk, "plain,refuses,refuses-again")).result.objects[0].methods
+    assert rows["refuses"].error == rows["refuses-again"].error == "too thin"
+    assert house.CALLS.count("fails") == 1
 
 
 def test_missing_step_is_named_with_the_plugin_that_makes_it(house, disk):

@@ -49,9 +49,19 @@ def test_the_recipe_holds_every_resolved_option(house, disk):
         "options": {
             "reader.disk": {"thickness": 10.0},
             "reconstructor.prism": {"points": 33, "stretch": 1.0},
-            "integrator.product": {"factor": 1.0},
+            "integrator.product": {"factor": 1.0, "limit": 5000.0},
         },
     }
+
+
+def test_an_option_that_was_opened_stays_open(house, disk, tmp_path):
+    settings = {"product": {"limit": "none", "factor": 100}}
+    request = MeasureRequest(disk, method="prism", shared={"thickness": 1}, settings=settings)
+    first = measure(request).result
+    assert first.objects[0].volume.value == pytest.approx(200 * 4 * 100)
+    assert first.recipe["options"]["integrator.product"]["limit"] == "none"
+    again = measure(load_recipe(written(first, tmp_path), disk)).result
+    assert again.objects[0].volume == first.objects[0].volume
 
 
 def test_methods_that_disagree_keep_their_own_options(house, disk):
