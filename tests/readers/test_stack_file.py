@@ -54,7 +54,7 @@ def test_any_value_is_read_or_refused_by_its_key_in_one_line(key, value):
     ("text", "words"),
     [
         ("pixelsize = 1", "unknown key 'pixelsize'.*did you mean 'pixel_size'"),
-        ("[slice.3]\ntreshold = 3", "unknown key 'slice.3.treshold'.*did you mean 'threshold'"),
+        ("[slice.3]\nthresh = 3", "unknown key 'slice.3.thresh'.*did you mean 'threshold'"),
         ("qqq = 1", "known keys: kind, pixel_size"),
         ("pixel_size = 0", "pixel_size is wrong"),
         ("pixel_size = true", "pixel_size is wrong: not a length"),
