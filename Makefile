@@ -43,7 +43,7 @@ bench: $(READY) ## ratios and times, one script of benchmarks/ after the other
 lock: ## renew requirements/py*.txt from pyproject.toml (needs uv: https://docs.astral.sh/uv/)
 	@command -v $(UV) >/dev/null || { echo "uv is not installed: pipx install uv, or make lock UV=path/to/uv"; exit 1; }
 	for version in $(PYTHON_VERSIONS); do \
-	  $(UV) pip compile pyproject.toml --extra dev --python-version $$version --python-platform linux \
+	  $(UV) pip compile pyproject.toml --extra dev --python-version $$version --python-platform x86_64-manylinux_2_35 \
 	    --generate-hashes --no-annotate --no-header --quiet --upgrade \
 	    --output-file requirements/py$$version.txt || exit 1; \
 	done
