@@ -69,7 +69,7 @@ def test_table_with_everything_there_is():
         "6.9800 cm",
         "0.9980",
         "0.8500 g/cm³",
-        "round, 0.280 cm beyond the section; guessed: volume ± 0.520 cm³, area ± 0.310 cm²",
+        "round, 0.280 cm beyond the section; guessed, ± 0.520 cm³, ± 0.310 cm²",
         "face; given: the outermost section is the face",
         "no mesher",
         "end-guessed  give [--height]",

@@ -59,6 +59,22 @@ def test_control_c_is_one_line_and_status_130(ball_folder, tmp_path, moment):
     assert {path.name for path in out.iterdir()} == whole
 
 
+def test_control_c_before_the_command_is_even_there_is_one_line_too():
+    code = (
+        "import os, signal, sys\n"
+        "class Strike:\n"
+        "    def find_spec(self, name, path, target=None):\n"
+        "        if name == 'typer': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Strike())\n"
+        "from stackloft.cli import main\n"
+        "main()\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert (run.returncode, run.stderr) == (130, "stackloft: interrupted\n")
+
+
 def test_a_full_disk_is_one_line_and_leaves_no_half_file(stackloft, ball_folder, tmp_path):
     """A limit on the size of files refuses bytes as a full disk does: the overview no longer fits."""
     out = tmp_path / "out"

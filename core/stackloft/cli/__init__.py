@@ -6,9 +6,15 @@
 
 from __future__ import annotations
 
+import sys
+
 
 def main() -> None:
     """Run the command line and leave with its exit status."""
-    from stackloft.cli.app import app  # noqa: PLC0415 - importing stackloft.cli imports no Typer
+    try:
+        from stackloft.cli.app import app  # noqa: PLC0415 - importing stackloft.cli imports no Typer
 
-    app()
+        app()
+    except KeyboardInterrupt:  # while commands are imported; a command itself answers in `guard`
+        print("stackloft: interrupted", file=sys.stderr)  # noqa: T201
+        sys.exit(130)

@@ -94,7 +94,7 @@ def _certainty(end: EndReport, unit: str) -> str:
         return f"guessed: {end.reason}"
     volume = in_unit(abs(end.volume_effect), unit, 3, _ROUGH)
     area = in_unit(abs(end.area_effect), unit, 2, _ROUGH)
-    return f"guessed: volume ± {volume}, area ± {area}"
+    return f"guessed, ± {volume}, ± {area}"
 
 
 def _methods(measurement: Measurement, unit: str) -> Table:
