@@ -101,7 +101,8 @@ def _turns_unsure(tangents: FloatArray) -> NDArray[np.bool_]:
     right = np.where(peak & (turn < 0.0), -turn, np.inf).min(axis=1)
     with np.errstate(invalid="ignore"):
         same = np.abs(left - right) < TURNS_APART
-    return np.asarray(same & (alike[:, 0] < ALIKE * best[:, 0]))
+    unturned = alike[:, [-2, -1, 0, 1, 2]].max(axis=1)  # a corner's place is known to a sample or two
+    return np.asarray(same & (unturned < ALIKE * best[:, 0]))
 
 
 def _correlation(signal: ComplexArray) -> ComplexArray:

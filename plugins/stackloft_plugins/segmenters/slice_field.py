@@ -14,6 +14,8 @@ from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.segmenters.body_window import background_of, body_window, coarse_step
+from stackloft_plugins.segmenters.edge_level import edge_level
+from stackloft_plugins.segmenters.flat_field import fit_light
 from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
@@ -37,6 +39,11 @@ class LevelRules:
     background: str | None = None
     """``light`` or ``dark``; None: found from the frame."""
 
+    @property
+    def settles(self) -> bool:
+        """Whether the level is sought at the body's edge."""
+        return self.threshold is None and self.method == "half-way"
+
 
 def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     """Return the field of one slice, cropped to the body and a margin.
@@ -54,18 +61,26 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     >>> field.offset, field.values.shape, field.threshold
     ((7, 7), (46, 66), 165.0)
     """
-    step = coarse_step(picture.shape)
+    shape: tuple[int, int] = picture.shape[:2]
+    step = coarse_step(shape)
     coarse = median_filtered(grey_levels(picture[::step, ::step], rules.channel))
     first = _first_level(picture, coarse, rules, name)
     background = background_of(coarse, first)
     sign = 1.0 if (background.dark if rules.background is None else rules.background == "dark") else -1.0
+    light = None
+    if sign < 0.0 and rules.settles:
+        light = fit_light(coarse, (coarse < first).astype(np.uint8), step, shape)
+        if light is not None:
+            coarse = light.flattened(coarse, np.s_[::step, ::step])
+            first = _first_level(picture, coarse, rules, name)
     seen = (sign * coarse > sign * first).astype(np.uint8)
-    window = body_window(seen, step, picture.shape[:2])
+    window = body_window(seen, step, shape)
     if window is None:
         raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
-    grey: Grey = sign * median_filtered(grey_levels(picture[window], rules.channel))
+    plain = median_filtered(grey_levels(picture[window], rules.channel))
+    grey: Grey = sign * (plain if light is None else light.flattened(plain, window))
     edge = _edge(grey, sign * first, rules, name)
-    level = edge.level if rules.threshold is None and rules.method == "half-way" else sign * first
+    level = edge_level(grey, edge) if rules.settles else sign * first
     notices = list(_contrast_notices(edge, _full_scale(picture, coarse), name))
     if rules.background is None and not background.sure:
         notices.append(_unsure(name))
@@ -117,8 +132,7 @@ def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -
 
 
 def _edge(grey: Grey, first: float, rules: LevelRules, name: str) -> Edge:
-    settled = rules.threshold is None and rules.method == "half-way"
-    edge = half_way_edge(grey, first) if settled else edge_at(grey, first)
+    edge = half_way_edge(grey, first) if rules.settles else edge_at(grey, first)
     if edge is None:
         raise _no_body(name, "no boundary between a body and its background")
     return edge

@@ -1,0 +1,106 @@
+"""Uneven light taken out: the plate's brightness, a smooth surface, divided away.
+
+A plate of one colour is as bright as the light that falls on it. Its grey levels beside the body, fitted by a
+quadratic surface, tell the light everywhere; divided by it, one grey level is the same shade all over the
+picture (flat-field correction from the background itself). A dark plate tells nothing of the light and
+needs nothing: the body's edge stands far above it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from stackloft.model.arrays import FloatArray, IntArray
+from stackloft_plugins.segmenters.body_window import Mask
+from stackloft_plugins.segmenters.grey import Grey
+
+_KEEP_OFF = 4
+"""Coarse pixels around the body that are not taken for plate."""
+_ROUNDS = 4
+_OUTLIER = 2.5
+"""Standard deviations; shadows, juice and reference objects lie further off."""
+_LEAST = 0.15
+"""Share of the picture that must be plate for a fit."""
+_STRONGEST = 0.6
+"""The light may not fall below this fraction of its mean; a fit that says so is no light."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Light:
+    """Relative brightness over a picture, mean 1 over the plate."""
+
+    coefficients: FloatArray
+    """(6,) of 1, x, y, x², xy, y² with x and y from −1 to 1 over the picture."""
+    shape: tuple[int, int]
+    """(rows, columns) of the whole picture."""
+
+    def flattened(self, grey: Grey, window: tuple[slice, slice]) -> Grey:
+        """Return grey levels of a window of the picture as they would be under even light."""
+        rows = np.arange(self.shape[0])[window[0]]
+        columns = np.arange(self.shape[1])[window[1]]
+        return np.asarray(grey / self.at(rows, columns), dtype=np.float32)
+
+    def at(self, rows: FloatArray | IntArray, columns: FloatArray | IntArray) -> FloatArray:
+        """Return the brightness at rows × columns."""
+        y = (2.0 * rows / max(self.shape[0] - 1, 1) - 1.0)[:, None]
+        x = (2.0 * columns / max(self.shape[1] - 1, 1) - 1.0)[None, :]
+        c = self.coefficients
+        return np.asarray(c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y)
+
+
+def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Light | None:
+    """Return the light over a bright plate.
+
+    Parameters
+    ----------
+    coarse : ndarray, (rows / step, columns / step)
+        Grey levels of every `step`-th pixel.
+    body : ndarray of uint8, same shape
+        1 where the coarse look sees anything but plate.
+    step : int
+    shape : (rows, columns) of the whole picture.
+
+    Returns
+    -------
+    Light or None
+        None when too little plate is seen, or when what is seen is no light.
+
+    Examples
+    --------
+    >>> y, x = np.mgrid[-1:1:60j, -1:1:80j]
+    >>> plate = (200 * (1 + 0.05 * x - 0.03 * y * y)).astype(np.float32)
+    >>> light = fit_light(plate, np.zeros(plate.shape, np.uint8), 1, plate.shape)
+    >>> bool(np.ptp(light.flattened(plate, np.s_[:, :])) < 0.01)
+    True
+    """
+    kernel = np.ones((2 * _KEEP_OFF + 1, 2 * _KEEP_OFF + 1), np.uint8)
+    plate = cv2.dilate(body, kernel) == 0
+    if plate.mean() < _LEAST:
+        return None
+    row, column = np.nonzero(plate)
+    value = coarse[plate].astype(np.float64)
+    y = 2.0 * row * step / max(shape[0] - 1, 1) - 1.0
+    x = 2.0 * column * step / max(shape[1] - 1, 1) - 1.0
+    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
+    found = _robust_fit(terms, value)
+    if found is None:
+        return None
+    light = Light(found / (terms @ found).mean(), shape)
+    corners = light.at(np.linspace(0, shape[0] - 1, 9), np.linspace(0, shape[1] - 1, 9))
+    return light if corners.min() > _STRONGEST and corners.max() < 1.0 / _STRONGEST else None
+
+
+def _robust_fit(terms: FloatArray, value: FloatArray) -> FloatArray | None:
+    """Return the least-squares surface without what lies far off it; None when little is left."""
+    kept = np.ones(len(value), dtype=bool)
+    coefficients: FloatArray = np.zeros(terms.shape[1])
+    for _ in range(_ROUNDS):
+        coefficients = np.asarray(np.linalg.lstsq(terms[kept], value[kept], rcond=None)[0], np.float64)
+        off = np.abs(value - terms @ coefficients)
+        kept = off <= max(_OUTLIER * 1.4826 * float(np.median(off)), 1.0)
+        if kept.mean() < 0.5:
+            return None
+    return coefficients
