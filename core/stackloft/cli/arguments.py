@@ -24,7 +24,7 @@ Source = Annotated[
     typer.Argument(metavar="SOURCE", help="A folder of slice photographs, or a file.", show_default=False),
 ]
 Json = Annotated[bool, typer.Option("--json", help="JSON on stdout, and nothing else there.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress and no table.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress; two lines instead of the table.")]
 Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder for the run's files."),
