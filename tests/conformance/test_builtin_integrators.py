@@ -10,14 +10,13 @@ def checks(name, expected_failures=None, **options):
     return integrator_checks(IntegratorCase(find("integrator", name).plugin, options), expected_failures)
 
 
-OPEN = {"refuses-open": "surface-gauss does not look whether the columns of patches close on themselves"}
 FRUSTA = {
     "convergence": "conical frusta know a section's area and perimeter alone, so that their area stays "
     "4.6 % off on sections with axes 1.75 : 1 however fine they are"
 }
 
 
-@pytest.mark.parametrize("check", checks("surface-gauss", OPEN), ids=str)
+@pytest.mark.parametrize("check", checks("surface-gauss"), ids=str)
 def test_surface_gauss(check):
     check()
 

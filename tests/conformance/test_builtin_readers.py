@@ -44,9 +44,6 @@ def table(columns):
     return write
 
 
-WRITABLE = {"read-frozen": "the default affine of SliceStack and ContourStack is a writable array (model)"}
-
-
 def photos_case(suffix, mode="L"):
     reader = find("reader", "photos").plugin
     options = {"pixel_size": "0.3mm", "thickness": "5mm"}
@@ -54,12 +51,12 @@ def photos_case(suffix, mode="L"):
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif", ".bmp", ".webp"])
-@pytest.mark.parametrize("check", reader_checks(photos_case(".png"), WRITABLE), ids=str)
+@pytest.mark.parametrize("check", reader_checks(photos_case(".png")), ids=str)
 def test_photos(check, suffix):
-    next(again for again in reader_checks(photos_case(suffix), WRITABLE) if again.name == check.name)()
+    next(again for again in reader_checks(photos_case(suffix)) if again.name == check.name)()
 
 
-@pytest.mark.parametrize("check", reader_checks(photos_case(".png", "RGB"), WRITABLE), ids=str)
+@pytest.mark.parametrize("check", reader_checks(photos_case(".png", "RGB")), ids=str)
 def test_colour_photos(check):
     check()
 
@@ -68,7 +65,6 @@ CONTOURS = ReaderCase(
     find("reader", "contours").plugin, table("section,z,loop,x,y"), without_spacing=table("section,loop,x,y")
 )
 UNDETECTABLE = {
-    **WRITABLE,
     "refuses-truncated": "a table cut off between two rows is a table, and says nothing of what is missing",
 }
 

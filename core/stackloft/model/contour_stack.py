@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray, IntArray, frozen_ints
+from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Hints, SectionKind
@@ -54,7 +54,7 @@ class ContourStack:
     """Pixel size in mm the loops were traced on; 0 for exact loops."""
     thickness: float | None = None
     """A slab's own thickness, mm."""
-    affine: FloatArray = field(default_factory=lambda: np.eye(4))
+    affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres to bench millimetres."""
     hints: Hints = field(default_factory=Hints)
     notices: tuple[Notice, ...] = ()

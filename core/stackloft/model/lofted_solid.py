@@ -40,7 +40,7 @@ class LoftedSolid:
 
     shells: tuple[Shell, ...]
     ends: tuple[EndReport, ...] = ()
-    affine: FloatArray = field(default_factory=lambda: np.eye(4))
+    affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres to bench millimetres."""
     notices: tuple[Notice, ...] = ()
 

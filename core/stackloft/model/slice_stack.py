@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.ends import End
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
@@ -69,7 +69,7 @@ class SliceStack:
     kind: SectionKind
     thickness: FloatArray | None = None
     """(m) mm, a slab's own thickness; None for faces."""
-    affine: FloatArray = field(default_factory=lambda: np.eye(4))
+    affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres (x, y, z, 1) to patient/bench millimetres; shear is gantry tilt."""
     hints: Hints = field(default_factory=Hints)
     notices: tuple[Notice, ...] = ()

@@ -8,6 +8,7 @@ from typing import ClassVar
 from stackloft.geometry.patch_integrals import solid_integrals
 from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.lofted_solid_check import check_lofted_solid
 from stackloft.model.measurement import Integral
 
 
@@ -28,10 +29,9 @@ class SurfaceGauss:
         Raises
         ------
         InputError
-            The solid has no shell, or it is inside out.
+            The solid has no shell, is open, or is inside out.
         """
-        if not product.shells:
-            raise InputError("the solid has no surface to integrate")
+        check_lofted_solid(product)
         parts = [solid_integrals(s.patches, s.plane_ends, product.affine) for s in product.shells]
         volume = sum(part[0] for part in parts)
         if volume <= 0.0:
