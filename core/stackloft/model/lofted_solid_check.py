@@ -1,4 +1,4 @@
-"""Is a lofted solid closed: do patches share their rims, and do its ends close?"""
+"""Whether a lofted solid is closed: patches share their rims, ends close."""
 
 from __future__ import annotations
 

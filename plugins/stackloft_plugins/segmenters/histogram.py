@@ -43,6 +43,7 @@ class HistogramSegmenter:
     api: ClassVar[str] = "1"
     accepts: ClassVar[tuple[type, ...]] = (SliceStack,)
     produces: ClassVar[tuple[type, ...]] = (Segmentation,)
+    general: ClassVar[bool] = True
 
     method: str = option(
         "half-way",
