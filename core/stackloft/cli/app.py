@@ -10,6 +10,7 @@ import typer
 
 from stackloft.cli import arguments as a
 from stackloft.cli.guard import guarded
+from stackloft.cli.study_commands import study_commands
 
 app = typer.Typer(
     name="stackloft",
@@ -142,6 +143,7 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     run(name, form, out, options, parameters or ())
 
 
+app.add_typer(study_commands)
 plugins = typer.Typer(help="What is installed, and which options it has.", no_args_is_help=True)
 app.add_typer(plugins, name="plugins")
 
