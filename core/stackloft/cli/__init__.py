@@ -6,11 +6,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
 def main() -> None:
     """Run the command line and leave with its exit status."""
+    # The matrices here are small: a second thread in them waits more than it works (user time × 2).
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from stackloft.cli.app import app  # noqa: PLC0415 - importing stackloft.cli imports no Typer
 

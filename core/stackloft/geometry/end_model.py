@@ -110,6 +110,7 @@ def guess_end(areas: FloatArray, depth: FloatArray, pitch: float) -> EndGuess:
         reason = "the areas do not close, half a pitch was assumed"
     elif root > pitch:
         reason = "the areas close later than one pitch, one pitch was assumed"
+        low = min(low, 0.5 * pitch)
     else:
         reason = "the parabola through the last three areas reaches zero there"
     return EndGuess(lengths[-1], False, reason, low, high)

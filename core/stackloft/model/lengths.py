@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 
 from stackloft.model.errors import UsageError
 
@@ -43,7 +44,8 @@ def parse_length(text: str | float, what: str = "length") -> float:
     number, unit = match.groups()
     if unit and unit not in MILLIMETRES:
         raise UsageError("unknown unit", where=what, found=repr(unit), expected="mm, cm, m, um or in")
-    return _finite(float(number) * MILLIMETRES.get(unit, 1.0), what)
+    factor = Decimal(repr(MILLIMETRES.get(unit, 1.0)))  # decimal, so that 0.021 cm is 0.21 mm to the bit
+    return _finite(float(Decimal(number) * factor), what)
 
 
 def parse_lengths(text: str, what: str = "lengths") -> tuple[float, ...]:
@@ -52,7 +54,7 @@ def parse_lengths(text: str, what: str = "lengths") -> tuple[float, ...]:
     Examples
     --------
     >>> parse_lengths("0,0.56,1.11cm")
-    (0.0, 5.6000000000000005, 11.100000000000001)
+    (0.0, 5.6, 11.1)
     """
     items = text.split(",")
     last = _LENGTH.fullmatch(items[-1])
