@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from stackloft.model.slice_stack import Hints, SectionKind, SliceStack
     from stackloft.model.tri_mesh import TriMesh
     from stackloft.pipeline.api import measure, read
+    from stackloft.studies.convergence import convergence
+    from stackloft.studies.convergence_table import Convergence
 
     __version__: str
 
@@ -55,11 +57,14 @@ _HOMES = {
     "model.slice_stack": ("Hints", "SectionKind", "SliceStack"),
     "model.tri_mesh": ("TriMesh",),
     "pipeline.api": ("measure", "read"),
+    "studies.convergence": ("convergence",),
+    "studies.convergence_table": ("Convergence",),
 }
 _MODULE_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
     "ContourStack",
+    "Convergence",
     "End",
     "EndKind",
     "EndReport",
@@ -86,6 +91,7 @@ __all__ = [
     "TriMesh",
     "UsageError",
     "__version__",
+    "convergence",
     "measure",
     "read",
 ]

@@ -8,7 +8,7 @@ from importlib.metadata import version
 import pytest
 
 HEAVY = ("numpy", "scipy", "cv2", "PIL", "vtk", "vtkmodules", "matplotlib", "SimpleITK", "skimage")
-COMMANDS = ["measure", "info", "phantom", "plugins list", "plugins show", "regress"]
+COMMANDS = ["measure", "info", "phantom", "plugins list", "plugins show", "regress", "convergence"]
 
 
 @pytest.mark.parametrize(

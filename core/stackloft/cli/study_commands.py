@@ -32,3 +32,46 @@ def regress(table: TableFile, out: a.Out = None, json: a.Json = False) -> None:
     from stackloft.cli.regress import run
 
     run(table, out, as_json=json)
+
+
+Tolerance = Annotated[
+    str | None,
+    typer.Option("--tolerance", metavar="PERCENT", help="Say how many suffice for it, as in 0.5%."),
+]
+
+
+@study_commands.command()
+@guarded
+def convergence(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
+    source: a.Source,
+    out: a.Out = None,
+    json: a.Json = False,
+    quiet: a.Quiet = False,
+    tolerance: Tolerance = None,
+    units: a.ShownUnits = a.Units.CM,
+    pixel_size: a.PixelSize = None,
+    thickness: a.Thickness = None,
+    positions: a.Positions = None,
+    method: a.Method = None,
+    ends: a.Ends = None,
+    height: a.Height = None,
+    settings: a.Settings = None,
+    reader: a.Reader = None,
+) -> None:
+    """Show how area and volume settle as boundary points and sections are added."""
+    from stackloft.cli.convergence import Output, run
+    from stackloft.cli.measure import request_of
+    from stackloft.cli.percent import parse_percent
+    from stackloft.registry import parse_settings
+
+    flags = {
+        "pixel_size": pixel_size,
+        "thickness": thickness,
+        "positions": positions,
+        "ends": ends,
+        "height": height,
+    }
+    own = parse_settings(settings or ())
+    request = request_of(source, reader=reader, method=method, flags=flags, settings=own)
+    percent = None if tolerance is None else parse_percent(tolerance, "--tolerance")
+    run(request, Output(out, json, quiet, percent, units.value))
