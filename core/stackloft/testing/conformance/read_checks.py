@@ -141,17 +141,24 @@ def _listed_in_order(seed: int) -> Iterator[None]:
     class Shuffled:
         def __init__(self, *arguments: Any) -> None:
             with scandir(*arguments) as entries:
-                self._entries = list(entries)
-            random.Random(seed).shuffle(self._entries)
+                listed = list(entries)
+            random.Random(seed).shuffle(listed)
+            self._entries = iter(listed)
 
         def __enter__(self) -> Iterator[Any]:
-            return iter(self._entries)
+            return self._entries
 
         def __exit__(self, *_: object) -> None:
             pass
 
         def __iter__(self) -> Iterator[Any]:
-            return iter(self._entries)
+            return self._entries
+
+        def __next__(self) -> Any:  # os.walk asks for one entry after the other
+            return next(self._entries)
+
+        def close(self) -> None:
+            pass
 
     with mock.patch("os.listdir", shuffled_names), mock.patch("os.scandir", Shuffled):
         yield

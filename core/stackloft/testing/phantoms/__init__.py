@@ -1,4 +1,4 @@
-"""Bodies whose volume and area are known to 1e-9, as exact contours or as photographs.
+"""Bodies whose volume and area are known to 1e-9, as exact contours, photographs or scans.
 
 >>> from stackloft.testing import phantoms
 >>> potato = phantoms.make("potato", seed=7, rotation=3, offset=(12.5, -4.0, 130.0))
@@ -12,6 +12,7 @@ from stackloft.testing.phantoms.contour_file import Contours
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
+from stackloft.testing.phantoms.scans import Scans
 from stackloft.testing.phantoms.writing import write_contours, write_phantom, write_photos
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "Phantom",
     "Photographs",
     "Realism",
+    "Scans",
     "make",
     "write_contours",
     "write_phantom",

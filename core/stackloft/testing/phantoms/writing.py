@@ -16,8 +16,13 @@ from stackloft.testing.phantoms.contour_file import Contours
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
+from stackloft.testing.phantoms.scans import WRITERS, Scans
 
-FORMS: dict[str, type[Photographs | Contours]] = {"photos": Photographs, "contours": Contours}
+FORMS: dict[str, type[Photographs | Contours | Scans]] = {
+    "photos": Photographs,
+    "contours": Contours,
+    **dict.fromkeys(WRITERS, Scans),
+}
 """Form to the class whose fields are its options."""
 
 
@@ -49,7 +54,7 @@ def write_phantom(
     ----------
     name : str
         One of `stackloft.testing.phantoms.NAMES`.
-    form : {"photos", "contours"}
+    form : {"photos", "contours", "dicom", "nrrd", "nifti", "tiff"}
     folder : Path or str
         Made if missing. Receives the sections, ``stack.toml`` and ``answer.json`` with the exact figures.
     rotation, offset
@@ -63,7 +68,8 @@ def write_phantom(
         Of the realism's random numbers.
     **options
         The fields of `Photographs` or `Contours`: sections, placing, points, tell; for photographs
-        pixel_size, realism, plate, suffix, bits, turn, mirror, margin; for contours shuffle.
+        pixel_size, realism, plate, suffix, bits, turn, mirror, margin; for contours shuffle; for scans
+        those of `Scans`.
 
     Raises
     ------
@@ -87,12 +93,14 @@ def write_phantom(
         raise UsageError("unknown form", where="--as", found=repr(form), expected=", ".join(FORMS))
     phantom = make(name, rotation=rotation, offset=offset, **(parameters or {}))
     checked = _checked(form, options)
-    if realistic and form == "contours":
-        raise UsageError("exact contours have no realism", where="realistic", fix="write photos")
+    if realistic and form != "photos":
+        raise UsageError(f"{form} have no realism", where="realistic", fix="write photos")
     if realistic:
         checked.setdefault("realism", Realism.of(phantom.name))
         checked["realism"] = replace(checked["realism"], seed=seed)
         checked.setdefault("plate", "black" if phantom.name == "apple" else "white")
+    if form in WRITERS:
+        checked["form"] = form
     return FORMS[form](**checked).write(phantom, Path(folder))
 
 
