@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture
@@ -21,4 +21,18 @@ class Sink(Protocol):
 
     def end(self) -> Any:
         """Return the product; called once after the last slice."""
+        ...
+
+
+@runtime_checkable
+class Streaming(Protocol):
+    """A plug-in that accepts a Segmentation and can take it slice by slice.
+
+    A run then feeds it in the one decoding pass, beside the contours; its sink's product is what its
+    ``integrate`` (``reconstruct``, …) would return. One that gathers the whole volume on the way says so by
+    a class variable ``needs_volume = True``; its sink raises InputError when that outgrows its memory.
+    """
+
+    def sink(self) -> Sink:
+        """Return a fresh sink."""
         ...

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from stackloft.model.bias import Bias
 from stackloft.model.notices import Notice
 
 
@@ -30,6 +31,16 @@ class Integral:
     area: float | None
     """mm²"""
     notices: tuple[Notice, ...] = ()
+    volume_uncertainty: float | None = None
+    """mm³: standard uncertainty of the volume, where the method itself tells one."""
+    area_uncertainty: float | None = None
+    """mm²: likewise of the area."""
+    volume_bias: Bias | None = None
+    """Where the volume may lie, when this body tells more than the method in general (`Recipe`)."""
+    area_bias: Bias | None = None
+    """Likewise for the area."""
+    details: Mapping[str, float] = field(default_factory=dict)
+    """What else the method found, by name (``coefficient_of_error`` 1, ``smoothness`` 1, …)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.bias import Bias
+from stackloft.model.notices import Notice
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -17,3 +19,6 @@ class TriMesh:
     """(t, 3) indices into `vertices`"""
     biased: str | None = None
     """Why its area is known to be biased (for example a binary label map); None when it is not."""
+    area_bias: Bias | None = None
+    """How far off, when that is known."""
+    notices: tuple[Notice, ...] = ()
