@@ -123,6 +123,11 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     seed: a.Seed = None,
     plate: a.Plate = None,
     suffix: a.Suffix = None,
+    camera: a.PhantomCamera = None,
+    reference: a.PhantomReference = None,
+    reference_height: a.ReferenceHeight = None,
+    reference_stays: a.ReferenceStays = False,
+    reference_once: a.ReferenceOnce = False,
     tell: a.Tell = None,
 ) -> None:
     """Write a stack whose volume and area are known, to try things on."""
@@ -138,6 +143,11 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "seed": seed,
         "plate": plate,
         "suffix": suffix,
+        "camera": camera,
+        "reference": reference,
+        "reference_height": reference_height,
+        "reference_stays": reference_stays or None,
+        "reference_once": reference_once or None,
         "tell": tell,
     }
     run(name, form, out, options, parameters or ())

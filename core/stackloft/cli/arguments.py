@@ -111,7 +111,9 @@ PhantomName = Annotated[
         show_default=False,
     ),
 ]
-Form = Annotated[str, typer.Option("--as", metavar="FORM", help="photos or contours.")]
+Form = Annotated[
+    str, typer.Option("--as", metavar="FORM", help="photos, contours, dicom, nrrd, nifti or tiff.")
+]
 PhantomOut = Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder to fill.")]
 Parameters = Annotated[
     list[str] | None,
@@ -135,6 +137,24 @@ Realistic = Annotated[
 Seed = Annotated[int | None, typer.Option("--seed", help="Of the realism's random numbers.")]
 Plate = Annotated[str | None, typer.Option("--plate", metavar="white|black", help="What the slice lies on.")]
 Suffix = Annotated[str | None, typer.Option("--suffix", help="png, jpg, tif, bmp or webp.  [default: png]")]
+PhantomCamera = Annotated[
+    str | None,
+    typer.Option(
+        "--camera", metavar="LEN[:fixed|receding]", help="A pinhole camera that far above the first face."
+    ),
+]
+PhantomReference = Annotated[
+    str | None,
+    typer.Option("--reference", metavar="KIND:LEN", help="A disc, square or ruler of that size beside it."),
+]
+ReferenceHeight = Annotated[
+    str | None,
+    typer.Option("--reference-height", metavar="LEN", help="How far it lies above the cut face."),
+]
+ReferenceStays = Annotated[
+    bool, typer.Option("--reference-stays", help="It stays where it is while the faces recede.")
+]
+ReferenceOnce = Annotated[bool, typer.Option("--reference-once", help="It is in the first picture alone.")]
 Tell = Annotated[
     str | None, typer.Option("--tell", metavar="KEY,…", help="What stack.toml says, as in thickness,height.")
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ from stackloft.cli.screen import console
 from stackloft.cli.units import in_unit
 from stackloft.model.errors import UsageError
 from stackloft.model.lengths import parse_length, parse_lengths
+from stackloft.testing.phantoms.camera import Camera
+from stackloft.testing.phantoms.reference_object import ReferenceObject
 from stackloft.testing.phantoms.writing import write_phantom
 
 
@@ -78,9 +81,29 @@ def _typed(options: Mapping[str, Any]) -> dict[str, Any]:
         typed["rotation"] = _rotation(typed["rotation"])
     if "placing" in typed and typed["placing"] not in {"mid", "faces"}:
         typed["placing"] = parse_lengths(typed["placing"], "--placing")
+    if "camera" in typed:
+        typed["camera"] = Camera.parse(typed["camera"])
+    typed |= _reference(typed)
     if "tell" in typed:
         typed["tell"] = tuple(key.strip() for key in typed["tell"].split(",") if key.strip())
     return typed
+
+
+def _reference(typed: dict[str, Any]) -> dict[str, ReferenceObject]:
+    """Take the reference object's flags out of `typed` and return them as one option."""
+    where = {name: typed.pop(f"reference_{name}", None) for name in ("height", "stays", "once")}
+    if "reference" not in typed:
+        if any(value is not None for value in where.values()):
+            raise UsageError("there is no reference object", where="--reference-…", fix="give --reference")
+        return {}
+    height = 0.0 if where["height"] is None else parse_length(where["height"], "--reference-height")
+    seen = replace(
+        ReferenceObject.parse(typed["reference"]),
+        height=height,
+        stays=bool(where["stays"]),
+        pictures="first" if where["once"] else "every",
+    )
+    return {"reference": seen}
 
 
 def _rotation(text: str) -> int | tuple[float, ...]:

@@ -19,6 +19,10 @@ KEYS = (
     "height",
     "background",
     "specimen",
+    "reference",
+    "reference_height",
+    "reference_stays",
+    "camera",
 )
 """What a folder can be made to tell; ``ends`` names the kinds of end, ``end_lengths`` their distances too."""
 
@@ -50,9 +54,11 @@ def answer(phantom: Phantom, positions: FloatArray) -> dict[str, Any]:
 
 
 def stack_toml(
-    phantom: Phantom, positions: FloatArray, tell: Collection[str], pixel_size: float, background: str
+    phantom: Phantom, positions: FloatArray, tell: Collection[str], told: Mapping[str, str]
 ) -> str:
     """Return the text of ``stack.toml`` with the keys asked for.
+
+    `told` holds the values, written as TOML, that the pictures decide: pixel size, background, camera.
 
     Raises
     ------
@@ -63,7 +69,7 @@ def stack_toml(
     --------
     >>> from stackloft.testing import phantoms
     >>> bar = phantoms.make("prism", height=60)
-    >>> print(stack_toml(bar, bar.positions(3), ["thickness", "end_lengths"], 0.3, "light"), end="")
+    >>> print(stack_toml(bar, bar.positions(3), ["thickness", "end_lengths"], {}), end="")
     thickness = "20mm"
     ends = "flat:10mm,flat:10mm"
     """
@@ -72,15 +78,17 @@ def stack_toml(
         raise UsageError("unknown key", where="tell", found=unknown[0], expected=", ".join(KEYS))
     values: Mapping[str, str] = {
         "kind": '"face"',
-        "pixel_size": f'"{pixel_size!r}mm"',
         "thickness": f'"{_pitch(positions):.12g}mm"' if "thickness" in tell else "",
         "positions": f'"{",".join(f"{z - positions[0]:.12g}" for z in positions)}mm"',
         "ends": f'"{ends_text(phantom, positions, lengths=False)}"',
         "end_lengths": f'"{ends_text(phantom, positions, lengths=True)}"',
         "height": f'"{phantom.height:.12g}mm"',
-        "background": f'"{background}"',
         "specimen": f'"{phantom.name}"',
+        **told,
     }
+    for key in tell:
+        if key not in values:
+            raise UsageError("there is none to tell of", where="tell", found=key)
     wanted = [key for key in KEYS if key in tell and not (key == "ends" and "end_lengths" in tell)]
     return "".join(f"{'ends' if key == 'end_lengths' else key} = {values[key]}\n" for key in wanted)
 

@@ -60,7 +60,7 @@ class Contours:
             return [write_whole(target, content)]
         if "pixel_size" in self.tell:
             raise UsageError("exact contours have no pixel size", where="tell", found="pixel_size")
-        toml = stack_toml(phantom, stack.positions, self.tell, 0.0, "light")
+        toml = stack_toml(phantom, stack.positions, self.tell, {})
         made_folder(target)
         files = [write_whole(target / "contours.csv", content)]
         if toml:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -14,23 +14,16 @@ from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.model.errors import UsageError
 from stackloft.testing.phantoms.answer import answer, stack_toml
+from stackloft.testing.phantoms.camera import Camera
 from stackloft.testing.phantoms.coverage import coverage
 from stackloft.testing.phantoms.files import made_folder, write_json, write_whole
 from stackloft.testing.phantoms.frame import Frame, framed
 from stackloft.testing.phantoms.phantom import Phantom
+from stackloft.testing.phantoms.picture_format import FORMATS, encoded
 from stackloft.testing.phantoms.placing import Placing
-from stackloft.testing.phantoms.realism import PLATES, Realism, photograph
+from stackloft.testing.phantoms.realism import PLATES, Realism, Thing, photograph
+from stackloft.testing.phantoms.reference_object import GREY, ReferenceObject
 
-FORMATS = {
-    "png": "PNG",
-    "jpg": "JPEG",
-    "jpeg": "JPEG",
-    "tif": "TIFF",
-    "tiff": "TIFF",
-    "bmp": "BMP",
-    "webp": "WEBP",
-}
-"""Suffix to Pillow's name of the format."""
 LEVELS = {"white": (230.0, 60.0), "black": (25.0, 200.0)}
 """Grey levels of plate and body in noise-free pictures, of 255."""
 
@@ -53,7 +46,7 @@ class Photographs:
     placing: Placing | tuple[float, ...] = "mid"
     """``mid``, ``faces`` or positions in mm (`stackloft.testing.phantoms.placing`)."""
     pixel_size: float = 0.3
-    """mm"""
+    """mm; under a camera, on the first picture's cut face"""
     realism: Realism | None = None
     """None: noise-free grey pictures whose levels are exact coverage."""
     plate: Literal["white", "black"] = "white"
@@ -68,6 +61,10 @@ class Photographs:
     """Plate around the body, mm; negative lets the picture's border cut it."""
     points: int = 3000
     """Points on each outline; the polygon's area is short by about 7/points²."""
+    camera: Camera | None = None
+    """None: every picture at one scale, as a scanner sees it."""
+    reference: ReferenceObject | None = None
+    """An object of known size on the plate."""
     tell: tuple[str, ...] = ("kind", "pixel_size", "thickness", "specimen")
     """Keys of ``stack.toml`` (`stackloft.testing.phantoms.answer.KEYS`); none: no such file."""
 
@@ -96,49 +93,81 @@ class Photographs:
             The system refuses; no half-written file is left.
         """
         positions = phantom.positions(self.sections, self.placing)
-        background = "light" if self.plate == "white" else "dark"
-        toml = stack_toml(phantom, positions, self.tell, self.pixel_size, background)
+        toml = stack_toml(phantom, positions, self.tell, self._told())
         cuts = [phantom.section(float(z), self.points) for z in positions]
-        frame = framed(cuts, self.pixel_size, self.margin, self.turn, self.mirror)
+        frames = self.frames(cuts, positions)
         made_folder(folder)
         digits = max(2, len(str(len(cuts))))
         files = []
         for i, (z, loops) in enumerate(zip(positions, cuts, strict=True), start=1):
-            content = self.encoded(self.picture(phantom, float(z), loops, frame, i))
+            content = self.encoded(self.picture(phantom, float(z), loops, frames[i - 1], i))
             files.append(write_whole(folder / f"slice_{i:0{digits}d}.{self.suffix}", content))
         if toml:
             files.append(write_whole(folder / "stack.toml", toml.encode()))
         files.append(write_json(folder / "answer.json", answer(phantom, positions)))
         return files
 
+    def frames(self, cuts: Sequence[Sequence[Loop]], positions: FloatArray) -> list[Frame]:
+        """Return where each picture's pixels lie on its own cut face."""
+        frame = framed(cuts, self.pixel_size, self.margin, self.turn, self.mirror)
+        if self.reference is not None:
+            frame = self.reference.widened(frame)
+        return [frame] * len(positions) if self.camera is None else self.camera.frames(frame, positions)
+
     def picture(
         self, phantom: Phantom, z: float, loops: tuple[Loop, ...], frame: Frame, index: int = 1
     ) -> NDArray[Any]:
         """Return one section's picture: (rows, columns) or (rows, columns, 3), uint8 or uint16."""
         covered = coverage(frame.polygons(loops), frame.shape)
+        thing = self._thing(frame, index)
         if self.realism is None:
             plate, body = LEVELS[self.plate]
             grey = plate + (body - plate) * covered
+            if thing is not None:
+                grey += (GREY - grey) * thing[0]
             return (
                 np.round(grey * 257).astype(np.uint16) if self.bits == 16 else np.round(grey).astype(np.uint8)
             )
         own = _body_frame(phantom, z, frame)
-        seen = photograph(covered, own, self.pixel_size, PLATES[self.plate], self.realism, index)
+        seen = photograph(covered, own, frame.pixel_size, PLATES[self.plate], self.realism, index, thing)
         return np.round(seen).astype(np.uint8)
 
     def encoded(self, picture: NDArray[Any]) -> bytes:
-        """Return the picture as a file's content."""
-        from PIL import Image  # noqa: PLC0415 - only where pictures are written
+        """Return the picture as a file's content; what a camera took says so in its EXIF."""
+        quality = self.realism.quality if self.realism else None
+        return encoded(picture, self.suffix, quality, by_camera=self.camera is not None)
 
-        form = FORMATS[self.suffix]
-        quality = self.realism.quality if self.realism else 95
-        options: dict[str, Any] = {
-            "JPEG": {"quality": quality, "subsampling": 0},
-            "WEBP": {"quality": quality, "lossless": self.realism is None},
-        }.get(form, {})
-        stream = io.BytesIO()
-        Image.fromarray(picture).save(stream, form, **options)
-        return stream.getvalue()
+    def _thing(self, frame: Frame, index: int) -> Thing | None:
+        """Return the reference object's coverage and colours in picture `index`, or None."""
+        if self.reference is None or not self.reference.shown(index):
+            return None
+        size = self._reference_scale(frame)
+        outline = self.reference.polygon(frame.shape, size)
+        return coverage([outline], frame.shape), self.reference.colours(frame.shape, size)
+
+    def _reference_scale(self, frame: Frame) -> float:
+        """Return the pixel size on the reference object's own plane, mm."""
+        if self.camera is None or self.reference is None:
+            return frame.pixel_size
+        focal = self.camera.distance / self.pixel_size
+        face = self.camera.distance if self.reference.stays else frame.pixel_size * focal
+        return (face - self.reference.height) / focal
+
+    def _told(self) -> dict[str, str]:
+        """Return the values of ``stack.toml`` that are the camera's."""
+        told = {
+            "pixel_size": f'"{self.pixel_size!r}mm"',
+            "background": '"light"' if self.plate == "white" else '"dark"',
+        }
+        if self.reference is not None:
+            told["reference"] = f'"{self.reference.kind}:{self.reference.size:.12g}mm"'
+            told["reference_height"] = f'"{self.reference.height:.12g}mm"'
+            told["reference_stays"] = str(self.reference.stays).lower()
+        if self.camera is not None:
+            told["camera"] = (
+                f'{{ distance = "{self.camera.distance:.12g}mm", plane = "{self.camera.plane}" }}'
+            )
+        return told
 
 
 def _body_frame(phantom: Phantom, z: float, frame: Frame) -> FloatArray:

@@ -55,8 +55,18 @@ PLATES: dict[str, Rgb] = {"white": (238.0, 237.0, 233.0), "black": (20.0, 20.0, 
 """Plate name to colour."""
 
 
+Thing = tuple[FloatArray, FloatArray]
+"""Coverage (rows, columns) and colour (3, rows, columns) of an object beside the body."""
+
+
 def photograph(
-    covered: FloatArray, body_frame: FloatArray, pixel_size: float, plate: Rgb, look: Realism, index: int
+    covered: FloatArray,
+    body_frame: FloatArray,
+    pixel_size: float,
+    plate: Rgb,
+    look: Realism,
+    index: int,
+    thing: Thing | None = None,
 ) -> FloatArray:
     """Return the picture, (rows, columns, 3) from 0 to 255, not yet rounded.
 
@@ -73,6 +83,8 @@ def photograph(
     look : Realism
     index : int
         The slice's number; with the seed it fixes the random numbers.
+    thing : tuple, optional
+        A reference object that lies on the plate.
     """
     rng = np.random.default_rng([look.seed, index])
     depth = distance_transform_edt(covered > 0.5) * pixel_size
@@ -81,6 +93,8 @@ def photograph(
     grain = relief(rng, covered.shape, 1.2) * 1.2 + relief(rng, covered.shape, 40) * 1.5
     ground = np.asarray(look.plate or plate)[:, None, None] + grain
     scene = covered * body + (1 - covered) * ground
+    if thing is not None:
+        scene = thing[0] * thing[1] + (1 - thing[0]) * scene
     scene = np.stack([gaussian_filter(channel, look.blur, mode="nearest") for channel in scene])
     scene = scene * _lamp(covered.shape, look)
     shot = look.noise * np.sqrt(0.35 + 0.65 * np.clip(scene, 0, 255) / 255)
