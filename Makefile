@@ -23,7 +23,7 @@ demo: $(READY) ## measure a sample stack; results in demo_out/
 	$(BIN)/stackloft measure sample_stacks/apple --out demo_out --write stl
 
 test: $(READY) ## the tests, within ten minutes on two cores
-	$(BIN)/python -m pytest -n 2 -m "not prove"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "not prove"
 
 check: $(READY) ## style, types, architecture, dependencies
 	$(BIN)/ruff format --check $(wildcard $(TREES))
@@ -35,7 +35,7 @@ check: $(READY) ## style, types, architecture, dependencies
 	$(BIN)/validate-pyproject pyproject.toml
 
 prove: $(READY) ## the full counts that the claims name; slow
-	$(BIN)/python -m pytest -n 2 -m prove
+	STACKLOFT_PROOF=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m prove
 
 bench: $(READY) ## ratios and times, one script of benchmarks/ after the other
 	@for script in $(sort $(wildcard benchmarks/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done

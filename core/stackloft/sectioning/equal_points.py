@@ -8,6 +8,7 @@ import numpy as np
 
 from stackloft.geometry.correspondence import slide_points
 from stackloft.geometry.curve_stack import CurveStack, fit_curves
+from stackloft.geometry.point_density import Spread, spread_by_turning
 from stackloft.geometry.seams import solve_phases
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
@@ -62,14 +63,13 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
     ]
     curves = fit_curves([loop.points for loop in ready], [loop.corners for loop in ready])
     z = contours.positions
-    phases, marks, notices = _solve_seams(curves, ready, contours)
-    chains = follow_corners(marks, most=count // 2)
-    fractions, fixed = _first_guess(chains, count, len(ready))
-    fractions += phases[:, None]
+    seams = _solve_seams(curves, ready, contours)
+    chains = follow_corners(seams.corners, most=count // 2)
+    fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
     height = np.broadcast_to(z[:, None, None], (*plane.shape[:2], 1))
-    return EqualSections(np.concatenate([plane, height], axis=2), fixed, curves, notices)
+    return EqualSections(np.concatenate([plane, height], axis=2), fixed, curves, seams.notices)
 
 
 def _single_loop(section: Section) -> Loop:
@@ -89,10 +89,20 @@ def _single_loop(section: Section) -> Loop:
     )
 
 
-def _solve_seams(
-    curves: CurveStack, loops: list[Loop], contours: ContourStack
-) -> tuple[FloatArray, list[FloatArray], tuple[Notice, ...]]:
-    """Return each section's phase, its corners counted from there, and notices of near ties."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seams:
+    """How the sections' loops lie to each other before their points slide."""
+
+    phases: FloatArray
+    """(m,) fraction of arc length from the canonical start to the seam"""
+    corners: list[FloatArray]
+    """corner places of each section as fractions from the seam"""
+    spread: Spread
+    notices: tuple[Notice, ...]
+
+
+def _solve_seams(curves: CurveStack, loops: list[Loop], contours: ContourStack) -> _Seams:
+    """Return each section's seam, its corners counted from there, and notices of near ties."""
     section = np.arange(len(curves))
     samples = np.arange(SAMPLES) / SAMPLES
     point, tangent = curves.at(section[:, None], samples[None, :])
@@ -100,9 +110,10 @@ def _solve_seams(
     seams = solve_phases(point - curves.centroids[:, None, :], tangent, places)
     largest = int(np.argmax(np.round(curves.areas, 9)))
     phases = seams.phases - seams.phases[largest]
-    marks = [np.sort(np.mod(p - phase, 1.0)) for p, phase in zip(places, phases, strict=True)]
+    corners = [np.sort(np.mod(p - phase, 1.0)) for p, phase in zip(places, phases, strict=True)]
     names = [s.name for s in contours.sections]
-    return phases, marks, tuple(_tie_notice(names[k], names[k + 1]) for k in seams.tied)
+    notices = tuple(_tie_notice(names[k], names[k + 1]) for k in seams.tied)
+    return _Seams(phases, corners, spread_by_turning(tangent, places), notices)
 
 
 def _tie_notice(before: str, after: str) -> Notice:
@@ -121,22 +132,25 @@ def _corner_places(curves: CurveStack, section: int, corners: IntArray) -> Float
     return np.sort(np.mod(knots - curves.starts[section], 1.0))
 
 
-def _first_guess(chains: list[CornerChain], count: int, sections: int) -> tuple[FloatArray, BoolArray]:
-    """Return fractions (m, N) even between corners, and which points are corners."""
+def _first_guess(chains: list[CornerChain], count: int, seams: _Seams) -> tuple[FloatArray, BoolArray]:
+    """Return fractions (m, N) from the canonical starts, and which points are corners.
+
+    Between corners the points are spread by `Spread`: evenly but for bends.
+    """
+    sections = len(seams.phases)
     fixed = np.zeros((sections, count), dtype=bool)
-    if not chains:
-        return np.tile(np.arange(count) / count, (sections, 1)), fixed
-    shares = share_points(chains, count)
+    shares = share_points(chains, count) if chains else [count]
     first = np.concatenate([[0], np.cumsum(shares)])
     fractions = np.empty((sections, count))
-    for section in range(sections):
-        places = np.array([place_at(chain, section) for chain in chains])
-        turns = np.concatenate([places, places[:1] + 1.0])
-        turns[1:] = turns[0] + np.cumsum(np.mod(np.diff(turns), 1.0)) if len(chains) > 1 else turns[1:]
+    for section, phase in enumerate(seams.phases):
+        places = np.array([place_at(chain, section) for chain in chains] or [0.0])
+        gaps = np.mod(np.diff(places), 1.0)
+        turns = phase + places[0] + np.concatenate([[0.0], np.cumsum(gaps), [1.0]])
+        ends = seams.spread.share(section, turns)
         for k, share in enumerate(shares):
-            stretch = turns[k] + (turns[k + 1] - turns[k]) * np.arange(share) / share
-            fractions[section, first[k] : first[k + 1]] = stretch
-            fixed[section, first[k]] = section in chains[k].at
+            stretch = ends[k] + (ends[k + 1] - ends[k]) * np.arange(share) / share
+            fractions[section, first[k] : first[k + 1]] = seams.spread.fraction(section, stretch)
+            fixed[section, first[k]] = bool(chains) and section in chains[k].at
     return fractions, fixed
 
 
