@@ -1,6 +1,7 @@
 """The readers of scans pass the kit that strangers run."""
 
 import numpy as np
+import pydicom
 import pytest
 
 from stackloft.registry import find
@@ -34,8 +35,6 @@ def dicom(**changes):
 
 
 def dicom_without_spacing(folder, slices):
-    import pydicom
-
     for path in write_dicom(volume(slices), folder):
         data = pydicom.dcmread(path)
         del data.PixelSpacing

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stackloft.model.errors import InputError
+from stackloft_plugins.readers.dicom_file import safely
 
 PACKAGES: dict[str, tuple[str, ...]] = {
     "1.2.840.10008.1.2.4.50": ("pylibjpeg-libjpeg", "python-gdcm"),
@@ -39,20 +40,14 @@ def check_decoder(syntax: str, path: Path) -> None:
 found: MPEG2 Main Profile / Main Level (1.2.840.10008.1.2.4.100); \
 fix: export the series uncompressed (Explicit VR Little Endian)
     """
-    from pydicom.pixels.decoders.base import get_decoder  # noqa: PLC0415 - slow to import, needed where DICOM is read
-    from pydicom.uid import UID  # noqa: PLC0415
-
-    named = UID(syntax)
-    found = f"{named.name} ({syntax})" if named.is_transfer_syntax else "no transfer syntax of DICOM"
-    try:
-        usable = get_decoder(named).is_available
-    except NotImplementedError:
+    found, usable = _known(syntax, path)
+    if usable is None:
         raise InputError(
             "no decoder knows its transfer syntax",
             where=str(path),
             found=found,
             fix="export the series uncompressed (Explicit VR Little Endian)",
-        ) from None
+        )
     if not usable:
         packages = PACKAGES.get(syntax, ("python-gdcm",))
         raise InputError(
@@ -62,3 +57,18 @@ fix: export the series uncompressed (Explicit VR Little Endian)
             expected=f"one of {', '.join(packages)}",
             fix=f"python -m pip install {packages[0]}",
         )
+
+
+def _known(syntax: str, path: Path) -> tuple[str, bool | None]:
+    """Return the syntax in words, and whether it can be decoded; None where no decoder knows it."""
+    from pydicom.pixels.decoders.base import get_decoder  # noqa: PLC0415 - slow to import
+    from pydicom.uid import UID  # noqa: PLC0415
+
+    with safely(path, "its transfer syntax"):
+        named = UID(syntax)
+        found = f"{named.name} ({syntax})" if named.is_transfer_syntax else "no transfer syntax of DICOM"
+        try:
+            return found, get_decoder(named).is_available
+        except NotImplementedError:
+            return found, None
+    raise AssertionError  # `safely` lets nothing through

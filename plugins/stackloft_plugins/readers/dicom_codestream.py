@@ -19,7 +19,7 @@ _UNDEFINED = 0xFFFFFFFF
 _SIZED = frozenset({*range(0xC0, 0xD0), 0xF7}) - {0xC4, 0xC8, 0xCC}
 """JPEG markers with the frame's size: SOF0 … SOF15, and SOF55 of JPEG-LS."""
 _HEAD = 1 << 16
-_RLE = "1.2.840.10008.1.2.5"
+RLE = "1.2.840.10008.1.2.5"
 _RLE_GAIN = 64
 """PackBits turns at most two bytes into 128."""
 
@@ -42,7 +42,7 @@ def check_codestream(stream: ClampedFile, frame: Frame) -> None:
     if not fragments:
         raise _damaged(frame, "no fragment", "at least one")
     sizes = sum(size for _, size in fragments)
-    if frame.syntax == _RLE:
+    if frame.syntax == RLE:
         need = frame.shape[0] * frame.shape[1] * frame.samples
         if need > _RLE_GAIN * sizes:
             raise _damaged(frame, f"{sizes} bytes", f"enough for {need} samples")

@@ -7,6 +7,7 @@ Its warnings and exceptions may quote a patient's name; neither leaves this modu
 from __future__ import annotations
 
 import io
+import logging
 import threading
 import warnings
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from pydicom import Dataset
 
 _LARGE = 1 << 16
+_LOGGERS = ("pydicom", "pylibjpeg", "openjpeg", "libjpeg")
 DEFLATED = "1.2.840.10008.1.2.1.99"
 _MOST_INFLATED = 1 << 29
 """Bytes: a deflated data set that grows beyond this is refused."""
@@ -52,12 +54,13 @@ class ClampedFile(io.BufferedReader):
 
 
 class _Quiet:
-    """Silences Python warnings while any thread is inside; the filters are the process's, so it counts."""
+    """Silences warnings and the decoders' logs while any thread is inside; both are the process's own."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._inside = 0
         self._catcher: warnings.catch_warnings[None] | None = None
+        self._levels: dict[str, int] = {}
 
     def __enter__(self) -> None:
         with self._lock:
@@ -65,6 +68,8 @@ class _Quiet:
                 self._catcher = warnings.catch_warnings()
                 self._catcher.__enter__()
                 warnings.simplefilter("ignore")
+                self._levels = {name: logging.getLogger(name).level for name in _LOGGERS}
+                self._log_at(dict.fromkeys(_LOGGERS, logging.CRITICAL + 1))
             self._inside += 1
 
     def __exit__(self, *_: object) -> None:
@@ -73,6 +78,11 @@ class _Quiet:
             if self._inside == 0 and self._catcher is not None:
                 self._catcher.__exit__(None, None, None)
                 self._catcher = None
+                self._log_at(self._levels)
+
+    def _log_at(self, levels: dict[str, int]) -> None:
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)
 
 
 _QUIET = _Quiet()

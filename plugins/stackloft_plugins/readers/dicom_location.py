@@ -1,4 +1,4 @@
-"""Slice Location as a witness: it places nothing, but where it contradicts one slice alone, that is damage."""
+"""Slice Location as a witness: it places nothing, but where it contradicts one slice alone, one is wrong."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import read_only
 from stackloft.model.errors import InputError
 from stackloft.model.slice_stack import Picture
-from stackloft_plugins.readers.dicom_codestream import check_codestream
+from stackloft_plugins.readers.dicom_codestream import RLE, check_codestream
 from stackloft_plugins.readers.dicom_file import DEFLATED, ClampedFile, safely
 from stackloft_plugins.readers.dicom_frame import Frame
 
@@ -100,6 +100,8 @@ def _stored(frame: Frame) -> tuple[NDArray[Any], Dataset]:
             whole = dcmread(stream, force=True)
             return np.asarray(pixel_array(whole, index=frame.number)), whole
         extra: dict[str, Any] = {} if _has_meta(stream) else {"transfer_syntax_uid": frame.syntax}
+        if frame.syntax == RLE:  # the quicker pylibjpeg-rle ends in a Rust panic on damaged segments
+            extra["decoding_plugin"] = "pydicom"
         values = pixel_array(stream, ds_out=data, index=frame.number, **extra)
         return np.asarray(values), data
 

@@ -154,11 +154,12 @@ def _gap_notices(
 
 
 def _expected_gaps(gaps: FloatArray, slab: FloatArray | None) -> FloatArray:
-    """Return the usual gap everywhere, in proportion to the slabs where their thickness changes."""
-    if slab is None:
-        return np.full(len(gaps), float(np.median(gaps)))
-    mean = 0.5 * (slab[:-1] + slab[1:])
-    return np.asarray(float(np.median(gaps / mean)) * mean)
+    """Return the usual gap everywhere, in proportion to the slabs where their thickness changes.
+
+    Usual is the lower quartile: where every other slice of one half is missing, the median misses it.
+    """
+    mean = np.ones(len(gaps)) if slab is None else 0.5 * (slab[:-1] + slab[1:])
+    return np.asarray(float(np.quantile(gaps / mean, 0.25)) * mean)
 
 
 def _direction(
