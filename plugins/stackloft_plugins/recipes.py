@@ -1,13 +1,29 @@
-"""The built-in methods."""
+"""The built-in methods, and how far each may be off on a body it suits."""
 
 from __future__ import annotations
 
 from stackloft.contracts.recipe import Recipe
+from stackloft.model.bias import Bias
+
+_LOFTED = "corresponding points were joined wrongly, or an end lies elsewhere than was assumed"
+_SHAPES = "thin parts of neighbouring sections do not overlap, or an end lies elsewhere than was assumed"
+_LEVEL = "slices far apart make steps between them, and a level off the edge moves the surface"
+_FRUSTA = "they stop at the outermost sections and see no more than area and perimeter"
 
 loft = Recipe(
     steps=("reconstructor.loft", "integrator.surface-gauss"),
     summary="B-spline loft through the sections, closed at its ends, integrated by the divergence theorem; "
     "assumes a surface that is smooth across sections",
+    volume_bias=Bias(-1.0, 1.0, _LOFTED),
+    area_bias=Bias(-1.5, 1.5, _LOFTED),
+)
+
+shape_interpolation = Recipe(
+    steps=("reconstructor.shape-interpolation", "integrator.polyhedral"),
+    summary="signed distance of the sections, cubic between them (Raya & Udupa 1990); no points correspond; "
+    "low where thin parts do not overlap, edges rounded",
+    volume_bias=Bias(-1.5, 1.0, _SHAPES),
+    area_bias=Bias(-2.0, 1.5, _SHAPES),
 )
 
 cavalieri = Recipe(
@@ -20,4 +36,31 @@ frustum = Recipe(
     steps=("integrator.frustum",),
     summary="conical frusta between neighbouring sections (Sabliov et al. 2002; Zheng & Sun 2006); "
     "sees no more than each section's area and perimeter",
+    volume_bias=Bias(-12.0, 1.0, _FRUSTA),
+    area_bias=Bias(-10.0, 2.0, _FRUSTA),
+)
+
+voxel = Recipe(
+    steps=("integrator.voxel",),
+    summary="pixels above the level times slice length; volume only; across slices it errs as cavalieri does",
+)
+
+partial_volume = Recipe(
+    steps=("integrator.partial-volume",),
+    summary="sum of the grey levels' coverage; volume only; unbiased for one grey before another, off where "
+    "the skin has another grey than the flesh",
+)
+
+crofton = Recipe(
+    steps=("integrator.crofton",),
+    summary="boundary crossings of lattice lines, directions weighted for the actual spacing (Legland et al. "
+    "2007); low at sharp edges, high on noisy masks; the volume is the voxel count",
+)
+
+isosurface = Recipe(
+    steps=("reconstructor.isosurface", "integrator.polyhedral"),
+    summary="the level's surface through the voxels (flying edges); high in area where slices are far apart "
+    "and on label maps",
+    volume_bias=Bias(-1.0, 1.0, _LEVEL),
+    area_bias=Bias(-1.0, 10.0, _LEVEL),
 )

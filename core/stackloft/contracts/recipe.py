@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from stackloft.model.bias import Bias
+
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
@@ -23,4 +25,8 @@ class Recipe:
     """One sentence for people: what is done, what it assumes, which way it errs."""
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options that this method sets, by ``family.name``; the person's own settings win."""
+    volume_bias: Bias | None = None
+    """Where its volumes may lie, by what is known of the method; None: it has no say when methods differ."""
+    area_bias: Bias | None = None
+    """Likewise for its areas. What an integrator says of one body (`Integral`) wins."""
     api: str = "1"

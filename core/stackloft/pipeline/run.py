@@ -21,6 +21,7 @@ from stackloft.model.measurement import Measurement, MethodRow, Result, SectionR
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Hints, SliceStack
+from stackloft.pipeline.blame import guarded
 from stackloft.pipeline.digest import PictureDigest, digest_of, digest_of_value
 from stackloft.pipeline.figures import derived_figures, method_row, require_volume
 from stackloft.pipeline.outcome import Outcome
@@ -30,7 +31,7 @@ from stackloft.pipeline.provenance import provenance_of
 from stackloft.pipeline.recipe_file import recipe_of
 from stackloft.pipeline.request import MeasureRequest
 from stackloft.pipeline.section_rows import section_rows
-from stackloft.pipeline.workbench import Workbench, guarded
+from stackloft.pipeline.workbench import Workbench
 
 
 def measure(

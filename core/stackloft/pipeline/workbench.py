@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from stackloft.contracts.sink import Sink
+from stackloft.contracts.sink import Sink, Streaming
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import PluginError, StackloftError
-from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.model.segmentation import Segmentation
+from stackloft.model.slice_stack import SliceStack
+from stackloft.pipeline.blame import blaming, guarded
 from stackloft.pipeline.chain_check import ladder
+from stackloft.pipeline.decoding import OwnSink, decode_once
 from stackloft.pipeline.plan import Plan, Step
 from stackloft.pipeline.progress import Progress
-from stackloft.registry import RUN, Loaded, failure, plain
+from stackloft.registry import RUN, plain
+
+__all__ = ["Item", "Workbench", "guarded"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,23 +58,27 @@ class Workbench:
         return item.value, work
 
     def apply(self, step: Step, item: Item) -> Item:
-        """Return what `step` makes of `item`."""
-        options = json.dumps({name: plain(value) for name, value in step.options.items()}, sort_keys=True)
+        """Return what `step` makes of `item`; a step that takes slices one by one joins the decoding pass."""
+        identity = _identity(step, item)
+        if isinstance(step.instance, Streaming) and isinstance(item.value, Segmentation):
+            return self._decoded(identity, step, item)
         return self._once(
-            f"{step.loaded.listing.qualified}{options}({item.identity})",
+            identity,
             step.key,
             lambda: guarded(step.loaded, getattr(step.instance, RUN[step.loaded.family]), item.value),
         )
 
     def fit(self, item: Item, accepts: tuple[type, ...], taker: str) -> Item:
         """Return `item`, or what follows from it on the ladder, as the first type that `accepts` names."""
-        rungs = ladder(type(item.value), segmented=self._plan.segmenter is not None)
-        for accepted in accepts:
-            for rung in rungs:
-                if issubclass(rung, accepted):
-                    return self._climb(item, rung)
-        need = " or ".join(kind.__name__ for kind in accepts)
-        raise PluginError(f"{taker} cannot take {type(item.value).__name__}", expected=need)
+        rung = self._rung(type(item.value), accepts)
+        if rung is None:
+            need = " or ".join(kind.__name__ for kind in accepts)
+            raise PluginError(f"{taker} cannot take {type(item.value).__name__}", expected=need)
+        return self._climb(item, rung)
+
+    def _rung(self, kind: type, accepts: tuple[type, ...]) -> type | None:
+        rungs = ladder(kind, segmented=self._plan.segmenter is not None)
+        return next((rung for accepted in accepts for rung in rungs if issubclass(rung, accepted)), None)
 
     def contours(self) -> ContourStack | None:
         """Return the sections of what was read; None for a surface, which has none."""
@@ -84,25 +92,56 @@ class Workbench:
             return item
         if isinstance(item.value, SliceStack) and self._plan.segmenter is not None:
             return self._climb(self.apply(self._plan.segmenter, item), rung)
-        return self._once(f"contours({item.identity})", "sections", lambda: self._trace(item))
+        return self._decoded(f"contours({item.identity})", None, item)
 
-    def _trace(self, item: Item) -> ContourStack:
+    def _decoded(self, identity: str, step: Step | None, item: Item) -> Item:
+        """Return what the decoding pass gives under `identity`, run now unless it has been."""
+        if identity not in self.made and identity not in self._failures:
+            self._decode(item, identity, step)
+        if identity in self._failures:
+            raise self._failures[identity]
+        return Item(self.made[identity], identity)
+
+    def _decode(self, item: Item, wanted: str, step: Step | None) -> None:
         """Run the one decoding pass; the caller's sinks see the slices of the plan's own segmentation."""
-        # tracing needs OpenCV, which contours and surfaces given as such can do without
-        from stackloft.sectioning.contour_sink import ContourSink, feed  # noqa: PLC0415
+        from stackloft.sectioning.contour_sink import ContourSink  # noqa: PLC0415 - it needs OpenCV
 
-        segmentation: Segmentation = item.value
-        first = not any(name.startswith("contours(") for name in self.made)
-        sinks = (ContourSink(), *(self._sinks if first else ()), _Teller(self._progress))
-        self._progress.begin("sections", len(segmentation))
+        contours = f"contours({item.identity})"
+        steps = {_identity(one, item): one for one in (*self._streaming(), *([step] if step else []))}
+        own = {contours: OwnSink(ContourSink)} | {
+            key: OwnSink(x.instance.sink, x) for key, x in steps.items()
+        }
+        own = {key: sink for key, sink in own.items() if key not in self.made and key not in self._failures}
+        start = time.perf_counter()
         try:
-            contours, *others, _ = feed(self._blamed(segmentation), sinks)
-        finally:
-            self._progress.end()
-        if first:
-            self.sink_products = tuple(others)
-        result: ContourStack = contours
-        return result
+            given = decode_once(self._blamed(item.value), own, self._sinks, wanted, self._progress)
+        except StackloftError as error:
+            refused = own[wanted].error is error
+            self._failures |= {wanted: error} if refused else dict.fromkeys(own, error)
+        else:
+            self.sink_products, self._sinks = self.sink_products or given, ()
+            self._failures |= {key: sink.error for key, sink in own.items() if sink.error is not None}
+            self.made |= {key: sink.product for key, sink in own.items() if sink.error is None}
+        whole = time.perf_counter() - start
+        for key, sink in own.items():
+            self._took(key, steps[key].key if key in steps else "sections", sink.seconds)
+        self._took(contours, "sections", whole - sum(sink.seconds for sink in own.values()))
+
+    def _streaming(self) -> Iterator[Step]:
+        """Yield the methods' first steps that take what was read slice by slice."""
+        for method in self._plan.methods:
+            for step in method.steps[:1]:
+                rung = self._rung(type(self.root.value), tuple(step.loaded.plugin.accepts))
+                if (
+                    isinstance(step.instance, Streaming)
+                    and rung is not None
+                    and issubclass(rung, Segmentation)
+                ):
+                    yield step
+
+    def _took(self, identity: str, stage: str, seconds: float) -> None:
+        self.seconds[identity] = self.seconds.get(identity, 0.0) + seconds
+        self.stages[stage] = self.stages.get(stage, 0.0) + seconds
 
     def _blamed(self, segmentation: Segmentation) -> Segmentation:
         """Return the same slices, with the plug-in named whenever decoding or segmenting one crashes."""
@@ -111,8 +150,8 @@ class Workbench:
         stack = segmentation.stack
         return replace(
             segmentation,
-            stack=replace(stack, decode=partial(_blaming, reader, stack.decode)),
-            field_of=partial(_blaming, segmenter, segmentation.field_of),
+            stack=replace(stack, decode=partial(blaming, reader, stack.decode)),
+            field_of=partial(blaming, segmenter, segmentation.field_of),
         )
 
     def _once(self, identity: str, stage: str, make: Callable[[], Any]) -> Item:
@@ -120,61 +159,18 @@ class Workbench:
             raise self._failures[identity]
         if identity not in self.made:
             start = time.perf_counter()
-            own_bar = stage != "sections"
+            self._progress.begin(stage, None)
             try:
-                if own_bar:
-                    self._progress.begin(stage, None)
                 self.made[identity] = make()
             except StackloftError as error:
                 self._failures[identity] = error
                 raise
             finally:
-                self.seconds[identity] = time.perf_counter() - start
-                self.stages[stage] = self.stages.get(stage, 0.0) + self.seconds[identity]
-                if own_bar:
-                    self._progress.end()
+                self._took(identity, stage, time.perf_counter() - start)
+                self._progress.end()
         return Item(self.made[identity], identity)
 
 
-class _Teller:
-    """A `Sink` that only tells the progress display that one more slice is done."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-
-    def begin(self, segmentation: Segmentation) -> None:
-        pass
-
-    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
-        self._progress.advance()
-
-    def end(self) -> None:
-        pass
-
-
-def guarded(loaded: Loaded, call: Callable[[Any], Any], argument: Any) -> Any:
-    """Return ``call(argument)``, checked against what the plug-in says it produces.
-
-    Raises
-    ------
-    PluginError
-        The plug-in raised something that is no StackloftError, or returned another type; plug-in
-        and distribution are named.
-    """
-    product = _blaming(loaded, call, argument)
-    produces = tuple(loaded.plugin.produces)
-    if not isinstance(product, produces):
-        names = " or ".join(kind.__name__ for kind in produces)
-        raise failure(loaded, TypeError(f"it returned {type(product).__name__}, announced was {names}"))
-    return product
-
-
-def _blaming(loaded: Loaded | None, call: Callable[..., Any], *arguments: Any) -> Any:
-    try:
-        return call(*arguments)
-    except StackloftError:
-        raise
-    except Exception as error:
-        if loaded is None:
-            raise
-        raise failure(loaded, error) from error
+def _identity(step: Step, item: Item) -> str:
+    options = json.dumps({name: plain(value) for name, value in step.options.items()}, sort_keys=True)
+    return f"{step.loaded.listing.qualified}{options}({item.identity})"

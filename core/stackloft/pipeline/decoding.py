@@ -1,0 +1,117 @@
+"""The one decoding pass over a stack: every sink sees each slice once, and each answers for itself alone."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from stackloft.contracts.sink import Sink
+from stackloft.model.errors import StackloftError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture
+from stackloft.pipeline.blame import blaming, checked
+from stackloft.pipeline.plan import Step
+from stackloft.pipeline.progress import Progress
+
+
+class OwnSink:
+    """A sink of the run's own (contours, a streaming plug-in) whose refusal stops nobody else."""
+
+    def __init__(self, make: Callable[[], Sink], step: Step | None = None) -> None:
+        self.product: Any = None
+        self.error: StackloftError | None = None
+        self.seconds = 0.0
+        self._step = step
+        self._sink: Sink | None = None
+        self._do(lambda: self._made(make))
+
+    def begin(self, segmentation: Segmentation) -> None:
+        """Hand on the segmentation."""
+        self._do(lambda: self._alive.begin(segmentation))
+
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:
+        """Hand on a slice, unless the sink has refused before."""
+        self._do(lambda: self._alive.add(index, picture, section_field))
+
+    def end(self) -> None:
+        """Take the product."""
+        self._do(self._finish)
+
+    def _made(self, make: Callable[[], Sink]) -> None:
+        self._sink = make()
+
+    def _finish(self) -> None:
+        product = self._alive.end()
+        self.product = product if self._step is None else checked(self._step.loaded, product)
+        self._sink = None
+
+    @property
+    def _alive(self) -> Sink:
+        if self._sink is None:
+            message = "a sink that has refused is not asked again"
+            raise RuntimeError(message)
+        return self._sink
+
+    def _do(self, work: Callable[[], None]) -> None:
+        if self.error is not None:
+            return
+        start = time.perf_counter()
+        try:
+            blaming(self._step.loaded if self._step else None, work)
+        except StackloftError as error:
+            self.error, self._sink = error, None
+        finally:
+            self.seconds += time.perf_counter() - start
+
+
+def decode_once(
+    segmentation: Segmentation,
+    own: Mapping[str, OwnSink],
+    others: Sequence[Sink],
+    wanted: str,
+    progress: Progress,
+) -> tuple[Any, ...]:
+    """Decode a stack once and feed everyone; return what the `others` give.
+
+    Parameters
+    ----------
+    segmentation : Segmentation
+    own : mapping of identity to OwnSink
+        Their products, or the reasons why there are none, stay with them.
+    others : sequence of Sink
+        The caller's.
+    wanted : str
+        Whose product was asked for: when that one refuses there is no point in going on.
+    progress : Progress
+        Told about each slice.
+
+    Raises
+    ------
+    StackloftError
+        A slice cannot be decoded or segmented, or the wanted sink refuses.
+    """
+    # tracing needs OpenCV, which contours and surfaces given as such can do without
+    from stackloft.sectioning.contour_sink import decoded_ahead  # noqa: PLC0415
+
+    sinks = (*own.values(), *others)
+    progress.begin("sections", len(segmentation))
+    try:
+        for sink in sinks:
+            sink.begin(segmentation)
+        _raise(own[wanted])
+        for index, picture, section in decoded_ahead(segmentation):
+            for sink in sinks:
+                sink.add(index, picture, section)
+            _raise(own[wanted])
+            progress.advance()
+        for mine in own.values():
+            mine.end()
+        return tuple(other.end() for other in others)
+    finally:
+        progress.end()
+
+
+def _raise(sink: OwnSink) -> None:
+    if sink.error is not None:
+        raise sink.error

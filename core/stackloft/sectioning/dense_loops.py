@@ -1,0 +1,46 @@
+"""Sections' curves as polygons of short sides."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stackloft.geometry.curve_stack import CurveStack, fit_curves
+from stackloft.model.arrays import FloatArray
+from stackloft.model.contour_stack import ContourStack
+from stackloft.sectioning.loop_curves import ready_loop
+
+
+def dense_loops(contours: ContourStack, step: float) -> list[list[FloatArray]]:
+    """Return every section's loops, the same curves that the loft goes through, in sides up to `step` mm.
+
+    Returns
+    -------
+    list, one item per section, of (k, 2) arrays
+        The loop's own vertices are among the points.
+
+    Examples
+    --------
+    >>> from stackloft.model.contour_stack import Loop, Section
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    >>> stack = ContourStack((Section(0.0, (Loop(square, np.arange(4)),), "a"),))
+    >>> (polygon,), = dense_loops(stack, 0.5)
+    >>> polygon[:5].tolist()
+    [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]
+    """
+    ready = [[ready_loop(loop, contours, s.name) for loop in s.loops] for s in contours.sections]
+    flat = [loop for loops in ready for loop in loops]
+    if not flat:
+        return [[] for _ in ready]
+    curves = fit_curves([loop.points for loop in flat], [loop.corners for loop in flat])
+    polygons = iter([_polygon(curves, k, step) for k in range(len(flat))])
+    return [[next(polygons) for _ in loops] for loops in ready]
+
+
+def _polygon(curves: CurveStack, k: int, step: float) -> FloatArray:
+    knots = curves.knots[curves.first[k] : curves.first[k + 1] + 1]
+    parts = max(1, math.ceil(curves.lengths[k] * float(np.diff(knots).max()) / step))
+    fractions = (knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(parts) / parts)).ravel()
+    points, _ = curves.at(np.full(len(fractions), k), fractions - k - curves.starts[k])
+    return points
