@@ -19,6 +19,7 @@ class TriMesh:
     """(t, 3) indices into `vertices`"""
     biased: str | None = None
     """Why its area is known to be biased (for example a binary label map); None when it is not."""
+    volume_bias: Bias | None = None
     area_bias: Bias | None = None
-    """How far off, when that is known."""
+    """How far off volume and area may be, when this surface's maker knows."""
     notices: tuple[Notice, ...] = ()

@@ -25,8 +25,8 @@ def method_row(method: str, integral: Integral, seconds: float) -> MethodRow:
     if volume == 0:
         raise InputError("the body has no volume", where=f"method {method}")
     return MethodRow(
-        None if volume is None else Figure(volume, "mm^3", method),
-        None if area is None else Figure(area, "mm^2", method),
+        None if volume is None else Figure(volume, "mm^3", method, integral.volume_uncertainty),
+        None if area is None else Figure(area, "mm^2", method, integral.area_uncertainty),
         seconds,
     )
 

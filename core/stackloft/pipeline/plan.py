@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from stackloft.model.bias import Bias
 from stackloft.model.errors import PluginError, StackloftError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import SliceStack
@@ -40,6 +41,9 @@ class Method:
     name: str
     steps: tuple[Step, ...] = ()
     error: StackloftError | None = None
+    volume_bias: Bias | None = None
+    area_bias: Bias | None = None
+    """What its recipe knows of its errors (`Recipe`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +156,9 @@ def _place(step: str, method: str, recipe: Loaded) -> Place:
 def _method(name: str, places: list[Place] | StackloftError, request: MeasureRequest) -> Method:
     if isinstance(places, StackloftError):
         return Method(name, error=places)
-    return Method(name, tuple(_step(place, request) for place in places))
+    recipe = find("recipe", name).plugin
+    steps = tuple(_step(place, request) for place in places)
+    return Method(name, steps, volume_bias=recipe.volume_bias, area_bias=recipe.area_bias)
 
 
 def _step(place: Place, request: MeasureRequest) -> Step:

@@ -10,17 +10,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from stackloft.contracts.sink import Sink
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import StackloftError
 from stackloft.model.lofted_solid import LoftedSolid
-from stackloft.model.measurement import Measurement, MethodRow, Result, SectionRow
+from stackloft.model.measurement import Integral, Measurement, MethodRow, Result, SectionRow
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Hints, SliceStack
+from stackloft.pipeline.agreement import disagreements
 from stackloft.pipeline.blame import guarded
 from stackloft.pipeline.digest import PictureDigest, digest_of, digest_of_value
 from stackloft.pipeline.figures import derived_figures, method_row, require_volume
@@ -81,7 +82,7 @@ def measure(
     result = Result(
         source={"path": str(request.source), "reader": reading.name, "digest": (*taken, reading.digest)[0]},
         objects=(body,),
-        warnings=_warnings(plan, products, skipped),
+        warnings=_warnings(plan, products, (*skipped, *disagreements(measured.found))),
         recipe=recipe_of(plan, segmented=any(isinstance(item, Segmentation) for item in products)),
         provenance=provenance_of(plan, seconds),
     )
@@ -102,6 +103,8 @@ class _Measured:
 
     identities: tuple[str, ...]
     solid: LoftedSolid | None
+    found: tuple[tuple[Method, Integral], ...] = ()
+    """Every method's figures as its integrator gave them, for comparing them."""
 
 
 def _read(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> _Reading:
@@ -123,6 +126,7 @@ def _run_methods(methods: Sequence[Method], bench: Workbench) -> tuple[dict[str,
     """Return every method's row, the primary one first; only the primary method's failure is raised."""
     rows: dict[str, MethodRow] = {}
     measured = _Measured((), None)
+    found: list[tuple[Method, Integral]] = []
     for number, method in enumerate(methods):
         try:
             rows[method.name], work = _run_method(method, bench)
@@ -131,10 +135,11 @@ def _run_methods(methods: Sequence[Method], bench: Workbench) -> tuple[dict[str,
                 raise
             rows[method.name] = MethodRow(None, None, 0.0, str(error))
             continue
+        found.append((method, bench.made[work[-1]]))
         if number == 0:
             solids = [bench.made[name] for name in work if isinstance(bench.made[name], LoftedSolid)]
             measured = _Measured(tuple(work), solids[0] if solids else None)
-    return rows, measured
+    return rows, replace(measured, found=tuple(found))
 
 
 def _run_method(method: Method, bench: Workbench) -> tuple[MethodRow, list[str]]:

@@ -56,4 +56,4 @@ class Polyhedral:
         if volume <= 0.0:
             raise InputError("the surface is inside out, or flat", found=f"volume {volume:g} mm³")
         notices = (Notice("area-biased", product.biased),) if product.biased else ()
-        return Integral(volume, area, notices, area_bias=product.area_bias)
+        return Integral(volume, area, notices, volume_bias=product.volume_bias, area_bias=product.area_bias)

@@ -13,9 +13,10 @@ from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.bias import Bias
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import Segmentation
-from stackloft.model.slice_stack import SliceStack
+from stackloft.model.slice_stack import SectionKind, SliceStack
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.sectioning.field_volume import FieldVolume, VolumeSink
+from stackloft.sectioning.slabs import slab_sum
 from stackloft.sectioning.streaming import streamed
 from stackloft_plugins.reconstructors.flying_edges import zero_surface
 
@@ -67,12 +68,14 @@ def _surface(volume: FieldVolume) -> TriMesh:
     vertices = _placed(grid - [0.0, 0.0, 1.0], volume.first_pixel, stack)
     if np.linalg.det(stack.affine[:3, :3]) < 0.0:
         faces = faces[:, ::-1]
-    bias = _label_bias(stack) if volume.segmentation.binary else None
+    steps = _step_bias(volume.segmentation)
+    counts = np.count_nonzero(volume.values > 0, axis=(1, 2)) * stack.pixel_spacing.prod(axis=1)
     return TriMesh(
         frozen_floats(vertices),
         frozen_ints(faces),
-        biased=bias.reason if bias else None,
-        area_bias=bias,
+        biased=steps.reason if steps and volume.segmentation.binary else None,
+        volume_bias=slab_sum(counts, stack)[1],
+        area_bias=steps,
         notices=volume.notices,
     )
 
@@ -101,12 +104,21 @@ def _single_thickness(stack: SliceStack) -> float:
     return float(stack.thickness[0])
 
 
-def _label_bias(stack: SliceStack) -> Bias:
-    """Return how far the area of a label map's stair-stepped surface is off."""
+def _step_bias(segmentation: Segmentation) -> Bias | None:
+    """Return how far off the area is by steps between voxels; None for a scan's grey levels.
+
+    A label map has steps all over; photographed cuts have them between slices alone, as nothing is grey
+    there.
+    """
+    stack = segmentation.stack
+    if not segmentation.binary and stack.kind is SectionKind.SLAB:
+        return None
     pitch = np.diff(stack.positions).mean() if len(stack) > 1 else _single_thickness(stack)
-    steps = np.array([*stack.pixel_spacing.mean(axis=0), pitch])
-    ratio = float(steps.max() / steps.min())
+    spacings = np.array([*stack.pixel_spacing.mean(axis=0), pitch])
+    ratio = float(spacings.max() / spacings.min())
     low, high = float(np.interp(ratio, _RATIOS, _LOWEST)), float(np.interp(ratio, _RATIOS, _HIGHEST))
+    if not segmentation.binary:
+        return Bias(-1.0, high, "the surface has steps between slices, which are far apart for their pixels")
     reason = (
         f"the surface of a label map is stair-stepped: its area is {low:.0f} to {high:.0f} % high at voxels"
         f" {ratio:.3g} : 1, however fine they are; use crofton or loft for the area"

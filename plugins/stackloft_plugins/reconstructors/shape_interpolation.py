@@ -11,14 +11,22 @@ import numpy as np
 from stackloft.contracts.options import option
 from stackloft.geometry.meridian import cubic_across
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
+from stackloft.model.bias import Bias
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.ends import End
 from stackloft.model.lengths import parse_length
 from stackloft.model.notices import Notice
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
-from stackloft_plugins.reconstructors.distance_rows import DistanceRows, distance_rows, section_shapes
+from stackloft_plugins.reconstructors.distance_rows import (
+    DistanceRows,
+    SectionShapes,
+    distance_rows,
+    section_shapes,
+)
 from stackloft_plugins.reconstructors.flying_edges import zero_surface
+
+_WHY = "where the body ends was guessed: give --height or --ends"
 
 
 @dataclass(frozen=True)
@@ -62,7 +70,14 @@ class ShapeInterpolation:
         placed = vertices @ product.affine[:3, :3].T + product.affine[:3, 3]
         if np.linalg.det(product.affine[:3, :3]) < 0.0:
             faces = faces[:, ::-1]
-        return TriMesh(frozen_floats(placed), frozen_ints(faces), notices=_guessed(ends))
+        unsure = _end_share(shapes, ends)
+        return TriMesh(
+            frozen_floats(placed),
+            frozen_ints(faces),
+            volume_bias=Bias(-1.5 - unsure, 1.0 + unsure, _WHY) if unsure else None,
+            area_bias=Bias(-2.0 - unsure, 1.5 + unsure, _WHY) if unsure else None,
+            notices=_guessed(ends),
+        )
 
 
 def _surface(rows: DistanceRows) -> tuple[FloatArray, IntArray]:
@@ -82,6 +97,13 @@ def _surface(rows: DistanceRows) -> tuple[FloatArray, IntArray]:
     centres = cubic_across(rows.z, rows.centres, (None, None))(z)
     plane = rows.grid[0] + step * points[:, :2] + centres
     return np.column_stack([plane, z]), faces
+
+
+def _end_share(shapes: SectionShapes, ends: tuple[PlannedEnd, PlannedEnd]) -> float:
+    """Return how much of the volume guessed ends may add or take, %: half their spread in length × area."""
+    spreads = [end.extremes[1].length - end.extremes[0].length if end.guessed else 0.0 for end in ends]
+    caps = 0.5 * np.array(spreads) * shapes.areas[[0, -1]]
+    return 100.0 * float(caps.sum() / np.trapezoid(shapes.areas, shapes.z))
 
 
 def _guessed(ends: tuple[PlannedEnd, PlannedEnd]) -> tuple[Notice, ...]:
