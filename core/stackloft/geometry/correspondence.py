@@ -26,7 +26,7 @@ EVENNESS = 10.0
 """λ: what uneven spacing costs against the slope of the columns."""
 HOLD = 0.3
 """Pull to the first guess, which keeps all columns from sliding round together."""
-ITERATIONS = 6
+ITERATIONS = 4
 
 
 def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolArray) -> FloatArray:
@@ -60,7 +60,7 @@ def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolAr
         step = _newton_step(point, slope, current, s, spacing, weight_pair, weight_own, fixed)
         largest = np.abs(step / spacing).max()
         current = _in_order(current, step, spacing)
-        if largest < 1e-3:
+        if largest < 5e-3:
             break
     return current
 

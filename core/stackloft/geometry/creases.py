@@ -2,8 +2,8 @@ r"""Sections at which the body's side turns sharply: a double cone's equator, th
 
 ::
 
-      /\  one sharp row            ____|     two sharp rows side by side, turning to and fro:
-     /  \ between straight ones   |          a step; smooth splines would overshoot there
+      /\  one sharp row           ____|     two or three sharp rows between straight ones: a step,
+     /  \ between straight ones   |          a flange; smooth splines would overshoot there
 """
 
 from __future__ import annotations
@@ -18,6 +18,8 @@ SHARP = np.radians(25.0)
 """Smallest turn of a crease."""
 QUIET = 0.2
 """Largest turn of the neighbouring sections, as a fraction of the crease's."""
+LONGEST = 3
+"""Most sharp sections in a row: a crease, a step, a flange; a longer run is a strongly bent body."""
 
 
 def find_creases(rows: FloatArray) -> BoolArray:
@@ -53,10 +55,14 @@ def find_creases(rows: FloatArray) -> BoolArray:
     cosine = np.clip((direction[1:] * direction[:-1]).sum(axis=2), -1.0, 1.0)
     turn = np.arccos(cosine).mean(axis=1)  # of rows 1 … n - 2
     padded = np.concatenate([[np.inf], turn, [np.inf]])  # what lies beyond the first and last row is unknown
-    sharp = turn > SHARP
-    before, after = padded[:-2], padded[2:]
-    creases[1:-1] = sharp & (np.maximum(before, after) < QUIET * turn)
-    for k in np.flatnonzero(sharp[:-1] & sharp[1:]):
-        least = min(turn[k], turn[k + 1])
-        creases[k + 1 : k + 3] |= max(padded[k], padded[k + 3]) < QUIET * least
+    for first, last in _runs(turn > SHARP):
+        flanks = max(padded[first], padded[last + 2])
+        if last - first < LONGEST and flanks < QUIET * turn[first : last + 1].min():
+            creases[first + 1 : last + 2] = True
     return creases
+
+
+def _runs(marked: BoolArray) -> list[tuple[int, int]]:
+    """Return first and last index of every run of marked rows."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(int)))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -48,10 +48,18 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
     value, slope = bernstein(x), bernstein_slope(x)
     local = patches - origin
     point = evaluate(local, value, value)
-    normal = np.cross(evaluate(local, value, slope), evaluate(local, slope, value))
+    normal = _cross(evaluate(local, value, slope), evaluate(local, slope, value))
     flux = np.einsum("...d,...d->...", point, normal).reshape(-1, len(w), len(w)).sum(axis=0)
     length = np.sqrt((normal**2).sum(axis=-1)).reshape(-1, len(w), len(w)).sum(axis=0)
     return float(w @ flux @ w) / 3.0, float(w @ length @ w)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a × b over the last axis; several times quicker than `numpy.cross` on small arrays."""
+    result = np.empty_like(a)
+    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        result[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return result
 
 
 def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:
@@ -80,7 +88,7 @@ def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:
 
 
 def solid_integrals(
-    patches: FloatArray, plane_ends: tuple[bool, bool], affine: FloatArray
+    patches: FloatArray, plane_ends: tuple[bool, bool], affine: FloatArray, degree: int = 9
 ) -> tuple[float, float]:
     """Return volume and area of a tube of patches with its plane ends.
 
@@ -92,6 +100,8 @@ def solid_integrals(
         Where a plane face closes the tube; elsewhere it ends in a pole.
     affine : (4, 4) array
         From stack to bench millimetres; a mirror or shear is allowed.
+    degree : int
+        As for `volume_and_area`.
 
     Returns
     -------
@@ -102,7 +112,7 @@ def solid_integrals(
     linear = affine[:3, :3]
     placed = patches if (linear == np.eye(3)).all() else patches @ linear.T
     origin = placed[:, :, 0, 0].mean(axis=(0, 1))
-    volume, area = volume_and_area(placed, origin)
+    volume, area = volume_and_area(placed, origin, degree)
     for wanted, rim in zip(plane_ends, (placed[0, ::-1, 0, ::-1], placed[-1, :, -1]), strict=True):
         if wanted:
             part = plane_face(rim, origin)

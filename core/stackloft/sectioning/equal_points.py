@@ -10,6 +10,7 @@ from stackloft.geometry.correspondence import slide_points
 from stackloft.geometry.curve_stack import CurveStack, fit_curves
 from stackloft.geometry.point_density import Spread, spread_by_turning
 from stackloft.geometry.seams import solve_phases
+from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
@@ -17,6 +18,8 @@ from stackloft.model.notices import Notice
 from stackloft.sectioning.corner_columns import CornerChain, follow_corners, place_at, share_points
 from stackloft.sectioning.loop_curves import ready_loop
 
+COARSEST = 0.55
+"""Largest difference in area between a loop's polygon and its curve; 4 points on a circle give 0.525."""
 SAMPLES = 128
 """Samples of a loop when phases are compared."""
 MOST_SOLVED = 64
@@ -62,14 +65,42 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
         for loop, section in zip(loops, contours.sections, strict=True)
     ]
     curves = fit_curves([loop.points for loop in ready], [loop.corners for loop in ready])
+    _check_fit(curves, ready, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
     chains = follow_corners(seams.corners, most=count // 2)
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
+    _check_simple(plane, contours)
     height = np.broadcast_to(z[:, None, None], (*plane.shape[:2], 1))
     return EqualSections(np.concatenate([plane, height], axis=2), fixed, curves, seams.notices)
+
+
+def _check_fit(curves: CurveStack, loops: list[Loop], contours: ContourStack) -> None:
+    """Refuse loops so jagged that the smooth curve through their points is another shape."""
+    given = np.array([loop.signed_area for loop in loops])
+    off = np.abs(curves.areas - given) > COARSEST * given
+    if off.any():
+        k = int(np.argmax(off))
+        raise InputError(
+            "the loop is too jagged for a smooth curve through its points",
+            where=contours.sections[k].name,
+            found=f"area {curves.areas[k]:.4g} mm² by the curve, {given[k]:.4g} mm² by the points",
+            fix="give more points, or mark the corners",
+        )
+
+
+def _check_simple(points: FloatArray, contours: ContourStack) -> None:
+    """Refuse sections whose points run round in a crossing line."""
+    crossing = crosses_itself(points)
+    if crossing.any():
+        name = contours.sections[int(np.argmax(crossing))].name
+        raise InputError(
+            "the loop crosses itself",
+            where=name,
+            fix="draw it anew, or give more --points when it is only finely shaped",
+        )
 
 
 def _single_loop(section: Section) -> Loop:

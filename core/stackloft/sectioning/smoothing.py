@@ -67,10 +67,10 @@ def _smooth_closed(points: FloatArray, pixel: float) -> FloatArray:
     overlap = min(10.0 * KNOT_SPACING * pixel, total)
     t = np.concatenate([around[:-1] - total, around[:-1], around[:-1] + total])
     inside = (t > -overlap) & (t < total + overlap)
-    spans = max(4, round(total / (KNOT_SPACING * pixel)))
+    spans = max(4, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
     knots = np.arange(-10 * spans, 11 * spans) * (total / spans)
     knots = knots[(knots > t[inside][0] + 1e-9) & (knots < t[inside][-1] - 1e-9)]
-    count = max(16, round(total / (STEP * pixel)))
+    count = max(16, _at_most(total / (STEP * pixel), 2 * len(points)))
     samples = np.arange(count) * (total / count)
     return _fit(t[inside], np.tile(points, (3, 1))[inside], knots, samples)
 
@@ -80,15 +80,20 @@ def _smooth_arc(points: FloatArray, pixel: float) -> FloatArray:
     chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
     t = np.concatenate([[0.0], np.cumsum(chord)])
     total = t[-1]
-    count = max(2, round(total / (STEP * pixel)))
+    count = max(2, _at_most(total / (STEP * pixel), 2 * len(points)))
     samples = np.linspace(0.0, total, count + 1)
     if len(points) < 8:
         return np.column_stack([np.interp(samples, t, axis) for axis in points.T])
-    spans = max(1, round(total / (KNOT_SPACING * pixel)))
+    spans = max(1, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
     knots = np.linspace(0.0, total, spans + 1)[1:-1]
     fitted = _fit(t, points, knots, samples, pinned=True)
     fitted[0], fitted[-1] = points[0], points[-1]
     return fitted
+
+
+def _at_most(wanted: float, most: int) -> int:
+    """Return a count, bounded by what the vertices can carry when they lie further apart than pixels."""
+    return round(min(wanted, float(most)))
 
 
 def _fit(

@@ -20,6 +20,7 @@ from stackloft.model.measurement import EndReport
 from stackloft.model.notices import Notice
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
+from stackloft.sectioning.self_check import check_against_areas
 
 OUTERMOST = 5
 """Sections lofted when the effect of a guessed end is worked out; those further in do not feel it."""
@@ -62,6 +63,7 @@ class LoftReconstructor:
         sections = equal_points(product, self.points)
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
+        _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
         shell = Shell(read_only(patches), (_is_plane(planned[0]), _is_plane(planned[1])))
         notices = (*sections.notices, *_guess_notices(reports))
@@ -95,6 +97,19 @@ def _patches(sections: EqualSections, planned: tuple[PlannedEnd, PlannedEnd]) ->
     return skin(closed_rows(sections.points, sections.corners, ends))
 
 
+def _self_check(
+    patches: FloatArray,
+    planned: tuple[PlannedEnd, PlannedEnd],
+    sections: EqualSections,
+    contours: ContourStack,
+) -> None:
+    """Hold the skin between the outermost sections against their areas."""
+    first, last = (int(end.length > 0.0) for end in planned)
+    rows = slice(first, len(patches) - last)
+    names = tuple(section.name for section in contours.sections)
+    check_against_areas(patches, rows, contours.positions, sections.curves.areas, names)
+
+
 def _reports(
     sections: EqualSections, planned: tuple[PlannedEnd, PlannedEnd], contours: ContourStack
 ) -> tuple[EndReport, EndReport]:
@@ -118,7 +133,7 @@ def _report(points: FloatArray, corners: BoolArray, end: PlannedEnd, contours: C
     figures = []
     for extreme in end.extremes:
         rows = closed_rows(points[outer], corners[outer], (_row_end(extreme), RowEnd(0.0, pole=False)))
-        figures.append(solid_integrals(skin(rows), (_is_plane(extreme), True), contours.affine))
+        figures.append(solid_integrals(skin(rows), (_is_plane(extreme), True), contours.affine, degree=5))
     volumes, areas = zip(*figures, strict=True)
     return replace(
         report,
