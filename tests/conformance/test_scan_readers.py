@@ -3,12 +3,16 @@
 import numpy as np
 import pydicom
 import pytest
+import SimpleITK
+import tifffile
 
 from stackloft.registry import find
 from stackloft.testing.conformance.reader_case import ReaderCase
 from stackloft.testing.conformance.reader_checks import reader_checks
 from stackloft.testing.phantoms.scan_dicom import write_dicom
 from stackloft.testing.phantoms.scan_grid import ScanGrid
+from stackloft.testing.phantoms.scan_itk import write_mha, write_nifti, write_nrrd
+from stackloft.testing.phantoms.scan_tiff import write_tiff
 from stackloft.testing.phantoms.scan_volume import ScanVolume
 
 
@@ -42,7 +46,58 @@ def dicom_without_spacing(folder, slices):
     return folder
 
 
+def itk(write, packed=True):
+    def write_one(folder, slices):
+        path = write(volume(slices), folder)[0]
+        if not packed:
+            SimpleITK.WriteImage(SimpleITK.ReadImage(str(path)), str(path), useCompression=False)
+        return path
+
+    return write_one
+
+
+def nrrd_without_spacing(folder, slices):
+    path = itk(write_nrrd, packed=False)(folder, slices)
+    head, body = path.read_bytes().split(b"\n\n", 1)
+    lines = [line for line in head.split(b"\n") if not line.startswith((b"space", b"kinds"))]
+    path.write_bytes(b"\n".join(lines) + b"\n\n" + body)
+    return path
+
+
+def tiff(folder, slices):
+    return write_tiff(volume(slices), folder)[0]
+
+
+def tiff_without_spacing(folder, slices):
+    path = folder / "scan.tif"
+    tifffile.imwrite(path, np.stack(volume(slices).slices).astype(np.float32), resolution=(72, 72))
+    return path
+
+
+def tiff_folder(folder, slices):
+    for k, picture in enumerate(volume(slices).slices):
+        tifffile.imwrite(folder / f"{k}.tif", picture.astype(np.float32))
+    return folder
+
+
+def npy(folder, slices):
+    np.save(folder / "volume.npy", np.stack(volume(slices).slices))
+    return folder / "volume.npy"
+
+
+def npz(folder, slices):
+    np.savez_compressed(folder / "volume.npz", ct=np.stack(volume(slices).slices), spacing=[2.5, 0.7, 0.4])
+    return folder / "volume.npz"
+
+
+def npz_without_spacing(folder, slices):
+    np.savez(folder / "volume.npz", np.stack(volume(slices).slices))
+    return folder / "volume.npz"
+
+
+GIVEN = {"pixel_size": "0.3mm", "thickness": "2.5mm"}
 DICOM = find("reader", "dicom").plugin
+ITK, TIFF, NUMPY = (find("reader", name).plugin for name in ("itk", "tiff", "numpy"))
 CASES = {
     "classic": ReaderCase(DICOM, dicom(), without_spacing=dicom_without_spacing),
     "multiframe": ReaderCase(DICOM, dicom(multiframe=True)),
@@ -50,11 +105,21 @@ CASES = {
     "jpeg-ls": ReaderCase(DICOM, dicom(syntax="jpeg-ls")),
     "jpeg-2000": ReaderCase(DICOM, dicom(syntax="jpeg-2000")),
     "deflated": ReaderCase(DICOM, dicom(syntax="deflated")),
+    "nrrd": ReaderCase(ITK, itk(write_nrrd), without_spacing=nrrd_without_spacing),
+    "nrrd-raw": ReaderCase(ITK, itk(write_nrrd, packed=False)),
+    "mha": ReaderCase(ITK, itk(write_mha)),
+    "mha-raw": ReaderCase(ITK, itk(write_mha, packed=False)),
+    "nifti": ReaderCase(ITK, itk(write_nifti)),
+    "tiff": ReaderCase(TIFF, tiff, without_spacing=tiff_without_spacing),
+    "tiff-folder": ReaderCase(TIFF, tiff_folder, GIVEN, tuple(GIVEN)),
+    "npy": ReaderCase(NUMPY, npy, GIVEN, tuple(GIVEN)),
+    "npz": ReaderCase(NUMPY, npz, without_spacing=npz_without_spacing),
 }
+UNPACKED = {"npz": {"read-small-memory": "an .npz is unpacked whole, first to tell labels from grey levels"}}
 CHECKS = [check.name for check in reader_checks(CASES["classic"])]
 
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("check", CHECKS)
 def test_scans(name, check):
-    next(each for each in reader_checks(CASES[name]) if each.name == check)()
+    next(each for each in reader_checks(CASES[name], UNPACKED.get(name)) if each.name == check)()

@@ -37,6 +37,9 @@ class Segmentation:
     binary: bool = False
     """True for label maps: no grey levels, so contours are stair-stepped and say so."""
     notices: tuple[Notice, ...] = ()
+    labels: tuple[int, ...] = ()
+    """The labels that a label map's pictures hold, one for each body; touching labels are bodies of their
+    own. Empty for grey levels."""
 
     def __len__(self) -> int:
         return len(self.stack)

@@ -36,7 +36,7 @@ class ScanVolume:
         return np.asarray(self.turn @ self.grid.corner(float(self.grid.positions[k])) + self.origin)
 
     def pitch(self) -> float:
-        """Return the one distance between neighbouring slices, mm.
+        """Return the one distance between neighbouring slices, mm; of one slice its thickness.
 
         Raises
         ------
@@ -44,6 +44,8 @@ class ScanVolume:
             The slices are not equally spaced, so that the form cannot hold them.
         """
         gaps = np.diff(self.grid.positions)
+        if not len(gaps):
+            return self.grid.thickness
         if np.ptp(gaps) > _EVEN * float(gaps.max()):
             raise UsageError(
                 "this form holds equally spaced slices alone",

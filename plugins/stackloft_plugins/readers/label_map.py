@@ -1,0 +1,77 @@
+"""Whether a volume is a label map, and its Segmentation when it is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stackloft.model.errors import InputError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture, SliceStack
+
+CHOICES = ("auto", "yes", "no")
+MOST_LABELS = 32
+"""An integer volume with no more different values than this is taken for labels."""
+_SAMPLED = 9
+
+
+def as_labels(stack: SliceStack, wanted: str) -> SliceStack | Segmentation:
+    """Return the stack's Segmentation when its pictures are labels, else the stack.
+
+    Parameters
+    ----------
+    stack : SliceStack
+    wanted : {"auto", "yes", "no"}
+        ``auto``: whole numbers of few values in a sample of slices, 0 among them, are labels.
+
+    Raises
+    ------
+    InputError
+        Labels are wanted and the pictures are no whole numbers from 0, or hold no label.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
+    >>> picture = np.zeros((8, 8), dtype=np.uint8)
+    >>> picture[2:5, 2:5] = 3
+    >>> grid = VoxelGrid((2, 8, 8), (1.0, 1.0), np.array([0.0, 1.0]))
+    >>> as_labels(volume_stack(grid, lambda k: picture, Path("a.nrrd"), {}), "auto").labels
+    (3,)
+    """
+    if wanted == "no" or (wanted == "auto" and not _seem_labels(stack)):
+        return stack
+    labels: set[int] = set()
+    for k in range(len(stack)):
+        labels |= _values(stack.decode(k), stack.names[k])
+    labels.discard(0)
+    if not labels:
+        raise InputError("the label map holds no label", where=stack.names[0])
+    return Segmentation(stack, _field_of, binary=True, labels=tuple(sorted(labels)))
+
+
+def _field_of(number: int, picture: Picture) -> SectionField:  # noqa: ARG001 - a field_of
+    return SectionField((picture > 0).astype(np.float64), 0.5, threshold=0.5)
+
+
+def _seem_labels(stack: SliceStack) -> bool:
+    values: set[int] = set()
+    for k in np.unique(np.linspace(0, len(stack) - 1, _SAMPLED).astype(int)):
+        picture = stack.decode(int(k))
+        if picture.dtype.kind not in "bui" or picture.ndim != 2:
+            return False
+        values |= set(np.unique(picture).tolist())
+        if len(values) > MOST_LABELS or min(values) < 0:
+            return False
+    return 0 in values and len(values) > 1
+
+
+def _values(picture: Picture, name: str) -> set[int]:
+    found = np.unique(picture)
+    if picture.ndim != 2 or found[0] < 0 or not (found == np.round(found)).all():
+        raise InputError(
+            "a label map holds whole numbers from 0",
+            where=name,
+            found=f"{found[0]:g} to {found[-1]:g}",
+            fix="--set labels=no reads grey levels",
+        )
+    return {int(value) for value in found}
