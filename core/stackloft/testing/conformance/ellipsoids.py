@@ -21,7 +21,9 @@ import numpy as np
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.lofted_solid import LoftedSolid, Shell
+from stackloft.model.segmentation import Segmentation
 from stackloft.model.tri_mesh import TriMesh
+from stackloft.testing.conformance.voxel_ellipsoid import scan
 
 A, B = 14.0, 8.0
 """Semi-axes, mm."""
@@ -103,7 +105,13 @@ def tri_mesh(fineness: int) -> TriMesh:
     return TriMesh(frozen_floats(vertices), frozen_ints(np.vstack(faces)))
 
 
+def segmentation(fineness: int) -> Segmentation:
+    """Return a scan of about ``8·fineness`` slabs whose grey levels are coverage."""
+    return scan((A, B, B), CENTRE, fineness)
+
+
 MAKERS: dict[type, Callable[[int], Any]] = {
+    Segmentation: segmentation,
     ContourStack: contour_stack,
     LoftedSolid: lofted_solid,
     TriMesh: tri_mesh,

@@ -21,6 +21,7 @@ from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.measurement import Integral
+from stackloft.model.segmentation import Segmentation
 from stackloft.registry.options_model import validate
 from stackloft.testing.conformance import ellipsoids
 from stackloft.testing.conformance.check import Check, must, must_refuse, suite
@@ -141,8 +142,8 @@ def refusals(case: IntegratorCase) -> None:
 def open_bodies(case: IntegratorCase) -> None:
     """Check that a solid or surface with a piece missing is refused, not measured."""
     for body in case.bodies():
-        if isinstance(body, ContourStack):
-            continue  # a loop is closed by what it is
+        if isinstance(body, (ContourStack, Segmentation)):
+            continue  # loops and voxels are closed by what they are
         what, gap = opened(body)
         must_refuse(lambda gap=gap: case.integrate(gap), what)  # type: ignore[misc]
 

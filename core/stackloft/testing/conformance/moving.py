@@ -11,6 +11,8 @@ import numpy as np
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture
 from stackloft.model.tri_mesh import TriMesh
 
 
@@ -20,7 +22,7 @@ def transformed(product: Any, matrix: FloatArray, shift: FloatArray) -> Any:
 
     Parameters
     ----------
-    product : ContourStack, LoftedSolid or TriMesh
+    product : Segmentation, ContourStack, LoftedSolid or TriMesh
         For a ContourStack `matrix` must keep the axis: [[a, b, 0], [c, d, 0], [0, 0, e]], e > 0.
     matrix : (3, 3) array
         A similarity.
@@ -65,6 +67,13 @@ def _(product: TriMesh, matrix: FloatArray, shift: FloatArray) -> TriMesh:
     )
 
 
+@transformed.register
+def _(product: Segmentation, matrix: FloatArray, shift: FloatArray) -> Segmentation:
+    move = np.eye(4)
+    move[:3, :3], move[:3, 3] = matrix, shift
+    return replace(product, stack=replace(product.stack, affine=frozen_floats(move @ product.stack.affine)))
+
+
 @singledispatch
 def started_elsewhere(product: Any, steps: int) -> Any:
     """Return the same product with its loops (columns, vertices) begun `steps` later."""
@@ -103,6 +112,18 @@ def _(product: TriMesh, steps: int) -> TriMesh:
     return replace(product, vertices=vertices, faces=frozen_ints(faces))
 
 
+@started_elsewhere.register
+def _(product: Segmentation, steps: int) -> Segmentation:
+    """Begin each slice's crop at another pixel."""
+
+    def cropped(index: int, picture: Picture) -> SectionField:
+        section = product.field_of(index, picture)
+        row, column = section.offset
+        return replace(section, values=section.values[steps:, steps:], offset=(row + steps, column + steps))
+
+    return replace(product, field_of=cropped)
+
+
 def turned_over(stack: ContourStack) -> ContourStack:
     """Return the stack with every loop run the other way round."""
 
@@ -120,7 +141,14 @@ def emptied(product: Any) -> Any:
         return replace(product, sections=())
     if isinstance(product, LoftedSolid):
         return replace(product, shells=())
+    if isinstance(product, Segmentation):
+        return replace(product, field_of=lambda k, picture: _without_body(product.field_of(k, picture)))
     return replace(product, vertices=frozen_floats(np.empty((0, 3))), faces=frozen_ints(np.empty((0, 3))))
+
+
+def _without_body(section: SectionField) -> SectionField:
+    lowest = float(section.values.min())
+    return replace(section, values=frozen_floats(np.full(section.values.shape, lowest)))
 
 
 def opened(product: Any) -> tuple[str, Any]:
