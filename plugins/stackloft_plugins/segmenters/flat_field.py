@@ -19,6 +19,8 @@ from stackloft_plugins.segmenters.grey import Grey
 
 _KEEP_OFF = 4
 """Coarse pixels around the body that are not taken for plate."""
+_MOST = 6000
+"""Pixels of plate, evenly chosen, that the surface is fitted to; it has six coefficients."""
 _ROUNDS = 4
 _OUTLIER = 2.5
 """Standard deviations; shadows, juice and reference objects lie further off."""
@@ -81,7 +83,9 @@ def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Li
     if plate.mean() < _LEAST:
         return None
     row, column = np.nonzero(plate)
-    value = coarse[plate].astype(np.float64)
+    every = max(1, len(row) // _MOST)
+    row, column = row[::every], column[::every]
+    value = coarse[row, column].astype(np.float64)
     y = 2.0 * row * step / max(shape[0] - 1, 1) - 1.0
     x = 2.0 * column * step / max(shape[1] - 1, 1) - 1.0
     terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
