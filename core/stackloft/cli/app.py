@@ -53,6 +53,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     write: a.Write = None,
     units: a.TableUnits = None,
     pixel_size: a.PixelSize = None,
+    reference: a.ReferenceFlag = None,
     thickness: a.Thickness = None,
     positions: a.Positions = None,
     method: a.Method = None,
@@ -73,6 +74,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
 
     flags = {
         "pixel_size": pixel_size,
+        "reference": reference,
         "thickness": thickness,
         "positions": positions,
         "points": points,
@@ -91,6 +93,7 @@ def info(
     json: a.Json = False,
     units: a.ShownUnits = a.Units.MM,
     pixel_size: a.PixelSize = None,
+    reference: a.ReferenceFlag = None,
     thickness: a.Thickness = None,
     positions: a.Positions = None,
     settings: a.Settings = None,
@@ -101,7 +104,12 @@ def info(
     from stackloft.cli.measure import request_of
     from stackloft.registry import parse_settings
 
-    flags = {"pixel_size": pixel_size, "thickness": thickness, "positions": positions}
+    flags = {
+        "pixel_size": pixel_size,
+        "reference": reference,
+        "thickness": thickness,
+        "positions": positions,
+    }
     own = parse_settings(settings or ())
     request = request_of(source, reader=reader, method=None, flags=flags, settings=own)
     run(request, as_json=json, unit=units.value)

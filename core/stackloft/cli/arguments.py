@@ -62,6 +62,14 @@ PixelSize = Annotated[
     str | None,
     typer.Option("--pixel-size", metavar="LEN", help="Side of one pixel, as in 0.21mm."),
 ]
+ReferenceFlag = Annotated[
+    str | None,
+    typer.Option(
+        "--reference",
+        metavar="KIND:LEN",
+        help="An object of known size in a corner: disc:24.25mm, square:20mm or ruler:50mm.",
+    ),
+]
 Thickness = Annotated[
     str | None,
     typer.Option("--thickness", metavar="LEN", help="From one cut to the next."),

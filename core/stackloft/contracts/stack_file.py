@@ -3,7 +3,12 @@
 ::
 
     kind = "face"                  # face | silhouette | slab
-    pixel_size = "0.3mm"           # a bare number is millimetres
+    pixel_size = "0.3mm"           # a bare number is millimetres; or pixel_sizes, one for each picture,
+                                   # dpi = true (a flatbed scan's tags), or a reference object:
+    reference = "disc:24.25mm"     # disc | square | ruler
+    reference_height = "-16mm"     # above the cut face of each picture; negative below it
+    reference_stays = false        # true: that far above the first face, and it stays there
+    scale_uncertainty = "0.2%"     # standard uncertainty of the pixel size
     thickness = 5.6                # or positions = "0,5.6,11.1mm", one for each picture
     ends = "face,round:2.5mm"      # as --ends
     height = "78mm"
@@ -13,10 +18,16 @@
     measured_weight = "182g"       # a bare number is grams
     measured_volume = "215 mL"     # a bare number is mm³
 
+    [camera]
+    distance = "600mm"             # from the lens to the first cut face
+    plane = "receding"             # fixed | receding: slices are taken off the top under a fixed camera
+    principal_point = [2000, 1500] # column, row; the picture's centre when left out
+
     [slice.7]                      # seventh picture in natural order
     threshold = 140                # on that picture's grey scale
     mask = "mask_007.png"          # white where the body is
     skip = true
+    pixel_size = "0.31mm"
 
 Reading it needs pydantic, so readers import this module when they read, not when they are listed.
 """
@@ -24,7 +35,6 @@ Reading it needs pydantic, so readers import this module when they read, not whe
 from __future__ import annotations
 
 import difflib
-import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -32,85 +42,28 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
+from stackloft.contracts.stack_values import (
+    bare_name,
+    ends_of,
+    length_of,
+    lengths_of,
+    percent_of,
+    reference_of,
+    volume_of,
+    weight_of,
+)
 from stackloft.model.ends import End
-from stackloft.model.errors import InputError, StackloftError
-from stackloft.model.lengths import MILLIMETRES, parse_length, parse_lengths
+from stackloft.model.errors import InputError
+from stackloft.model.reference import Reference
 from stackloft.model.slice_stack import Hints, SectionKind
 
 NAME = "stack.toml"
 """The file's name."""
 
-GRAMS = {"g": 1.0, "kg": 1e3, "mg": 1e-3, "oz": 28.349523125, "lb": 453.59237}
-"""Grams in one unit."""
-
-CUBIC_MILLIMETRES = {
-    "ml": 1e3,
-    "l": 1e6,
-    "cc": 1e3,
-    "ul": 1.0,
-    **{f"{unit}{power}": mm**3 for unit, mm in MILLIMETRES.items() for power in ("3", "^3", "³")},
-}
-"""mm³ in one unit (lower case)."""
-
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
-
-
-def _length(value: Any) -> float:
-    try:
-        return parse_length(value)
-    except StackloftError as error:
-        raise ValueError(_reason(error)) from error
-
-
-def _lengths(value: Any) -> tuple[float, ...]:
-    if not isinstance(value, (str, list)):
-        raise ValueError('not a list of lengths, as "0,5.6,11.1mm"')  # noqa: TRY004 - pydantic gathers ValueError
-    try:
-        return parse_lengths(value) if isinstance(value, str) else tuple(parse_length(item) for item in value)
-    except StackloftError as error:
-        raise ValueError(_reason(error)) from error
-
-
-def _ends(value: Any) -> tuple[End, End]:
-    text = ",".join(map(str, value)) if isinstance(value, list) else str(value)
-    try:
-        return End.parse_pair(text)
-    except StackloftError as error:
-        raise ValueError(_reason(error)) from error
-
-
-def _quantity(value: Any, units: Mapping[str, float]) -> float:
-    if isinstance(value, str):
-        match = _QUANTITY.fullmatch(value)
-        factor = units.get(match.group(2).lower()) if match else None
-        if match is None or factor is None:
-            raise ValueError(f"not a number with a unit ({', '.join(list(units)[:4])}, …)")
-        return float(match.group(1)) * factor
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError("not a number")  # noqa: TRY004 - pydantic gathers ValueError
-    return float(value)
-
-
-def _weight(value: Any) -> float:
-    return _quantity(value, GRAMS)
-
-
-def _volume(value: Any) -> float:
-    return _quantity(value, CUBIC_MILLIMETRES)
-
-
-def _bare_name(value: str) -> str:
-    if not value or Path(value).name != value or value in {".", ".."}:
-        raise ValueError("must be the name of a file in the same folder")
-    return value
-
-
-def _reason(error: StackloftError) -> str:
-    return f"{error.what} ({error.expected})" if error.expected else error.what
-
-
 _Positive = Field(gt=0, allow_inf_nan=False)
-_Length = Annotated[float, BeforeValidator(_length), _Positive]
+_Length = Annotated[float, BeforeValidator(length_of), _Positive]
+_Shift = Annotated[float, BeforeValidator(length_of)]
+_Lengths = Annotated[tuple[float, ...], BeforeValidator(lengths_of)]
 _STRICT = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
@@ -121,9 +74,23 @@ class SliceOverride(BaseModel):
 
     threshold: Annotated[float, Field(allow_inf_nan=False)] | None = None
     """On the picture's own grey scale."""
-    mask: Annotated[str, AfterValidator(_bare_name)] | None = None
+    mask: Annotated[str, AfterValidator(bare_name)] | None = None
     """A picture of the same size, white where the body is."""
     skip: bool = False
+    pixel_size: _Length | None = None
+
+
+class CameraSaid(BaseModel):
+    """Where the camera hung."""
+
+    model_config = _STRICT
+
+    distance: _Length | None = None
+    """mm from the lens to the first picture's cut face."""
+    plane: Literal["fixed", "receding"] | None = None
+    """Whether the cut faces stay at that distance, or recede as slices are taken off the top."""
+    principal_point: Annotated[tuple[float, float], Field(strict=False)] | None = None
+    """(column, row) where the optical axis meets the picture, pixels; None: its centre."""
 
 
 class StackFile(BaseModel):
@@ -133,15 +100,22 @@ class StackFile(BaseModel):
 
     kind: Annotated[SectionKind, Field(strict=False)] | None = None
     pixel_size: _Length | None = None
+    pixel_sizes: _Lengths | None = None
+    dpi: bool = False
+    scale_uncertainty: Annotated[float, BeforeValidator(percent_of), Field(ge=0, lt=100)] | None = None
+    reference: Annotated[Reference, BeforeValidator(reference_of)] | None = None
+    reference_height: _Shift | None = None
+    reference_stays: bool = False
+    camera: CameraSaid = CameraSaid()
     thickness: _Length | None = None
-    positions: Annotated[tuple[float, ...], BeforeValidator(_lengths)] | None = None
-    ends: Annotated[tuple[End, End], BeforeValidator(_ends)] | None = None
+    positions: _Lengths | None = None
+    ends: Annotated[tuple[End, End], BeforeValidator(ends_of)] | None = None
     height: _Length | None = None
     background: Literal["light", "dark"] | None = None
     units: Literal["cm", "mm", "m", "um", "in"] | None = None
     specimen: str | None = None
-    measured_weight: Annotated[float, BeforeValidator(_weight), _Positive] | None = None
-    measured_volume: Annotated[float, BeforeValidator(_volume), _Positive] | None = None
+    measured_weight: Annotated[float, BeforeValidator(weight_of), _Positive] | None = None
+    measured_volume: Annotated[float, BeforeValidator(volume_of), _Positive] | None = None
     slice: dict[Annotated[int, Field(ge=1, strict=False)], SliceOverride] = {}
 
     def hints(self, folder: Path, numbers: Mapping[int, int]) -> Hints:
@@ -171,7 +145,7 @@ class StackFile(BaseModel):
 
 
 def _override(said: SliceOverride, folder: Path) -> dict[str, Any]:
-    values: dict[str, Any] = said.model_dump(exclude_none=True, exclude_defaults=True)
+    values: dict[str, Any] = said.model_dump(exclude_none=True, exclude_defaults=True, exclude={"pixel_size"})
     if said.mask is not None:
         values["mask"] = folder / said.mask
     return values
@@ -229,7 +203,8 @@ def _explain(error: ValidationError, where: str) -> InputError:
     first = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in first["loc"] if part != "[key]")
     if first["type"] == "extra_forbidden":
-        known = SliceOverride if first["loc"][0] == "slice" else StackFile
+        tables: dict[Any, type[BaseModel]] = {"slice": SliceOverride, "camera": CameraSaid}
+        known = tables.get(first["loc"][0], StackFile) if len(first["loc"]) > 1 else StackFile
         name = str(first["loc"][-1])
         near = difflib.get_close_matches(name, known.model_fields, n=1, cutoff=0.5)
         fix = f"did you mean {near[0]!r}?" if near else f"known keys: {', '.join(known.model_fields)}"

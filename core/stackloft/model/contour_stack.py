@@ -10,6 +10,7 @@ import numpy as np
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
+from stackloft.model.scale import ScaleUncertainty
 from stackloft.model.slice_stack import Hints, SectionKind
 
 
@@ -56,6 +57,8 @@ class ContourStack:
     """A slab's own thickness, mm."""
     affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres to bench millimetres."""
+    scale_uncertainty: ScaleUncertainty | None = None
+    """How well the scale in the section planes is known; None: nothing is known of that."""
     hints: Hints = field(default_factory=Hints)
     notices: tuple[Notice, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)

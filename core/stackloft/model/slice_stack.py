@@ -14,6 +14,7 @@ from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.ends import End
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
+from stackloft.model.scale import ScaleUncertainty
 
 Picture = NDArray[Any]
 """One decoded slice: (rows, columns) grey or (rows, columns, 3) RGB, any real dtype."""
@@ -53,7 +54,8 @@ class SliceStack:
     """Slices in order along the axis, in millimetres.
 
     In-plane coordinates: x = column·column spacing, y = row·row spacing, z = position: the picture is
-    seen along +z, so (x, y, z) is right-handed. Pixel (0, 0)'s centre is the in-plane origin.
+    seen along +z, so (x, y, z) is right-handed. Pixel (0, 0)'s centre is the in-plane origin, or lies at
+    the slice's own origin when slices are scaled about a principal point: x = origin + column·spacing.
     """
 
     decode: Callable[[int], Picture]
@@ -71,6 +73,10 @@ class SliceStack:
     """(m) mm, a slab's own thickness; None for faces."""
     affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres (x, y, z, 1) to patient/bench millimetres; shear is gantry tilt."""
+    origins: FloatArray | None = None
+    """(m, 2) mm: x, y of pixel (0, 0)'s centre in each slice; None: all at 0."""
+    scale_uncertainty: ScaleUncertainty | None = None
+    """How well the pixel spacing is known; None: nothing is known of that."""
     hints: Hints = field(default_factory=Hints)
     notices: tuple[Notice, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
@@ -92,6 +98,12 @@ def check_slice_stack(stack: SliceStack) -> None:
             found=f"{stack.positions.shape}, {stack.pixel_spacing.shape}",
             expected=f"({m},), ({m}, 2)",
         )
+    if stack.origins is not None and (stack.origins.shape != (m, 2) or not np.isfinite(stack.origins).all()):
+        raise InputError(
+            "origins do not fit the slices", found=str(stack.origins.shape), expected=f"({m}, 2)"
+        )
+    if stack.scale_uncertainty is not None and stack.scale_uncertainty.each.shape != (m,):
+        raise InputError("the scale's uncertainty does not fit the slices", expected=f"({m},) values")
     if not (np.isfinite(stack.positions).all() and (np.diff(stack.positions) > 0).all()):
         raise InputError("slice positions must be finite and strictly increasing")
     if not (np.isfinite(stack.pixel_spacing).all() and (stack.pixel_spacing > 0).all()):

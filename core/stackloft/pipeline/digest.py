@@ -109,6 +109,8 @@ class PictureDigest:
         stack = segmentation.stack
         for array in (stack.positions, stack.pixel_spacing, stack.affine):
             self._hash.update(array.tobytes())
+        if stack.origins is not None:
+            self._hash.update(stack.origins.tobytes())
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
         """Take in one picture."""

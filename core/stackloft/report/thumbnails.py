@@ -85,13 +85,15 @@ class ThumbnailSink:
         size = max(1, round(columns * factor)), max(1, round(rows * factor))
         along = size[0] / columns, size[1] / rows
         row_spacing, column_spacing = self._stack.pixel_spacing[index]
+        x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index]
+        from_left, from_top = left + x / column_spacing, top + y / row_spacing
         self._thumbnails.append(
             Thumbnail(
                 self._stack.names[index],
                 float(self._stack.positions[index]),
                 as_rgb(resized(_resizable(part), size)),
                 (along[0] / column_spacing, along[1] / row_spacing),
-                ((0.5 - left) * along[0] - 0.5, (0.5 - top) * along[1] - 0.5),
+                ((0.5 - from_left) * along[0] - 0.5, (0.5 - from_top) * along[1] - 0.5),
             )
         )
 

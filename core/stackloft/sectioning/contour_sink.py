@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 from stackloft.contracts.sink import Sink
-from stackloft.model.contour_stack import ContourStack, Section
+from stackloft.model.arrays import frozen_floats
+from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture
+from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
 
@@ -63,7 +65,7 @@ class ContourSink:
         row, column = (float(step) for step in stack.pixel_spacing[index])
         name = stack.names[index]
         traced = trace_field(section_field, (row, column), stack.shape, name, self._rules)
-        loops = tuple(with_corners(loop, max(row, column)) for loop in traced.loops)
+        loops = tuple(with_corners(_placed(loop, stack, index), max(row, column)) for loop in traced.loops)
         self._sections.append(Section(float(stack.positions[index]), loops, name))
         self._notices += [*section_field.notices, *traced.notices]
 
@@ -78,6 +80,7 @@ class ContourSink:
             resolution=float(stack.pixel_spacing.max()),
             thickness=None if stack.thickness is None else float(stack.thickness.mean()),
             affine=stack.affine,
+            scale_uncertainty=stack.scale_uncertainty,
             hints=stack.hints,
             notices=(*stack.notices, *segmentation.notices, *gathered(self._notices)),
             provenance=stack.provenance,
@@ -89,6 +92,13 @@ class ContourSink:
             message = "begin() comes first"
             raise RuntimeError(message)
         return self._segmentation
+
+
+def _placed(loop: Loop, stack: SliceStack, index: int) -> Loop:
+    """Return the loop where it lies in the stack's plane coordinates."""
+    if stack.origins is None:
+        return loop
+    return replace(loop, points=frozen_floats(loop.points + stack.origins[index]))
 
 
 def trace_stack(segmentation: Segmentation, rules: TraceRules | None = None) -> ContourStack:

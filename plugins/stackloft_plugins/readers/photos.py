@@ -19,8 +19,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-import numpy as np
-
 from stackloft.contracts.options import option
 from stackloft.contracts.stack_file import NAME, StackFile, load_stack_file
 from stackloft.model.arrays import frozen_floats
@@ -30,7 +28,11 @@ from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
 from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture, read_header
 from stackloft_plugins.readers.picture_folder import check_sizes, list_pictures, split_source
 from stackloft_plugins.readers.picture_kinds import READABLE, SUFFIXES, natural_key, picture_kind
-from stackloft_plugins.readers.section_spacing import SpacingOptions, pixel_size_of, positions_of
+from stackloft_plugins.readers.picture_scale import Bench
+from stackloft_plugins.readers.reference_find import Found, hide
+from stackloft_plugins.readers.scale_choice import ScaledSlices, profiles, require_scale, scale_of
+from stackloft_plugins.readers.scale_said import ScaleFlags, scale_said
+from stackloft_plugins.readers.section_spacing import SpacingOptions, first_position, positions_of
 
 MIN_SLICES = 2
 """Fewer sections bound no body."""
@@ -64,6 +66,28 @@ class PhotosReader:
     positions: tuple[float, ...] | str | None = option(
         None, "position of every face along the axis, in the order of the file names", unit="mm"
     )
+    pixel_sizes: tuple[float, ...] | str | None = option(
+        None, "pixel size of every picture, in the order of the file names", unit="mm"
+    )
+    dpi: bool = option(False, "take the pixel size from the files' resolution tags, as of a flatbed scan")
+    reference: str | None = option(
+        None, "an object of known size in a corner: disc:DIAMETER, square:SIDE or ruler:LENGTH"
+    )
+    reference_height: float | str | None = option(
+        None, "the reference object above the cut face; negative below it", unit="mm"
+    )
+    reference_stays: bool = option(False, "it is that far above the first face, and stays there")
+    camera_distance: float | str | None = option(
+        None, "from the lens to the first picture's cut face", unit="mm", gt=0
+    )
+    plane: str | None = option(
+        None,
+        "fixed: all cut faces are as far from the lens; receding: slices are taken off the top",
+        choices=("fixed", "receding"),
+    )
+    scale_uncertainty: float | None = option(
+        None, "standard uncertainty of the pixel size", unit="%", ge=0, lt=100
+    )
     first: str = option("", "file name of the first slice to use; the folder's first when empty")
     last: str = option("", "file name of the last slice to use; the folder's last when empty")
 
@@ -95,25 +119,49 @@ class PhotosReader:
         _check_kind(said, folder)
         every, matched = list_pictures(path, _masks(said))
         numbers = self._chosen(every, matched)
-        flags = SpacingOptions(self.pixel_size, self.thickness, self.positions)
-        size, size_source = pixel_size_of(flags, said, path)
-        positions, position_source = positions_of(flags, said, numbers, len(every), path)
+        positions, position_source = positions_of(self._spacing, said, numbers, len(every), path)
+        scale_told = scale_said(self._scale, said)
+        require_scale(scale_told, path)
         kept, notices = _without_skipped(numbers, said, every)
         headers = tuple(read_header(every[number]) for number in kept)
         _check_count(headers, path)
         check_sizes(headers)
+        places = dict(zip(numbers, positions, strict=True))
+        folder_first = first_position(self._spacing, said, numbers, path)
+        z = frozen_floats([places[number] for number in kept])
+        slices = ScaledSlices(headers, kept, len(every), Bench(z - folder_first, scale_told))
+        paper = 0 if said.background == "dark" else 255
+        scale, found = scale_of(slices, said, paper)
         return SliceStack(
-            decode=_decoder(headers, 0 if said.background == "dark" else 255),
+            decode=_decoder(headers, found, paper),
             names=tuple(header.path.name for header in headers),
             shape=headers[0].size,
-            positions=frozen_floats(
-                [z for z, number in zip(positions, numbers, strict=True) if number in kept]
-            ),
-            pixel_spacing=frozen_floats(np.full((len(headers), 2), size)),
+            positions=z,
+            pixel_spacing=scale.spacing,
             kind=said.kind or SectionKind.FACE,
+            origins=scale.origins,
+            scale_uncertainty=scale.uncertainty,
             hints=said.hints(folder, {number + 1: slot for slot, number in enumerate(kept, start=1)}),
-            notices=notices,
-            provenance={"pixel size": size_source, "positions": position_source},
+            notices=(*notices, *scale.notices),
+            provenance={"pixel size": scale.source, "positions": position_source, **profiles(headers)},
+        )
+
+    @property
+    def _spacing(self) -> SpacingOptions:
+        return SpacingOptions(thickness=self.thickness, positions=self.positions)
+
+    @property
+    def _scale(self) -> ScaleFlags:
+        return ScaleFlags(
+            self.pixel_size,
+            self.pixel_sizes,
+            self.dpi,
+            self.reference,
+            self.reference_height,
+            self.reference_stays,
+            self.camera_distance,
+            self.plane,
+            self.scale_uncertainty,
         )
 
     def _chosen(self, every: tuple[Path, ...], matched: tuple[int, ...]) -> tuple[int, ...]:
@@ -185,8 +233,12 @@ def _check_count(headers: tuple[PictureHeader, ...], path: Path) -> None:
         )
 
 
-def _decoder(headers: tuple[PictureHeader, ...], paper: int) -> Callable[[int], Picture]:
+def _decoder(
+    headers: tuple[PictureHeader, ...], found: tuple[Found | None, ...], paper: int
+) -> Callable[[int], Picture]:
     def decode(number: int) -> Picture:
-        return decode_picture(headers[number], paper)
+        picture = decode_picture(headers[number], paper)
+        reference = found[number]
+        return picture if reference is None else hide(picture, reference)
 
     return decode

@@ -6,7 +6,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from PIL import Image, UnidentifiedImageError
 
 from stackloft.model.errors import InputError
 from stackloft_plugins.readers.picture_kinds import READABLE
+from stackloft_plugins.readers.picture_tags import PictureTags, read_tags
 
 MAX_PIXELS = 500_000_000
 """Larger pictures are taken for decompression bombs."""
@@ -53,6 +54,8 @@ class PictureHeader:
     """(rows, columns) as seen upright"""
     orientation: int = 1
     """EXIF orientation, 1 to 8"""
+    tags: PictureTags = field(default_factory=PictureTags)
+    """What the file says about its making."""
     delicate: bool = False
     """True when opening it needs Pillow's warnings or its own size limit put aside."""
 
@@ -76,6 +79,7 @@ def read_header(path: Path) -> PictureHeader:
     with _delicately() as caught, _opened(path) as image:
         orientation = _orientation(image)
         columns, rows = image.size
+        tags = read_tags(image)
         _check_pages(image, path)
     if rows * columns > MAX_PIXELS:
         raise InputError(
@@ -88,7 +92,7 @@ def read_header(path: Path) -> PictureHeader:
     if min(rows, columns) < MIN_SIDE:
         raise InputError("picture is too small", where=str(path), found=f"{columns} × {rows} pixels")
     size = (columns, rows) if orientation >= 5 else (rows, columns)
-    return PictureHeader(path, size, orientation, bool(caught) or rows * columns > _PILLOW_LIMIT)
+    return PictureHeader(path, size, orientation, tags, bool(caught) or rows * columns > _PILLOW_LIMIT)
 
 
 def decode_picture(header: PictureHeader, paper: int = 255) -> NDArray[Any]:

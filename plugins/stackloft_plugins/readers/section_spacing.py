@@ -90,6 +90,23 @@ def positions_of(
     )
 
 
+def first_position(flags: SpacingOptions, said: StackFile, numbers: tuple[int, ...], where: Path) -> float:
+    """Return where the folder's first face lies, mm, on the scale of `positions_of`.
+
+    A camera's distance is that of the folder's first face. Positions given for the chosen slices alone do
+    not tell where it lies; the first chosen one is then taken.
+
+    Examples
+    --------
+    >>> first_position(SpacingOptions(thickness=5), StackFile(), (2, 3), Path("apple"))
+    -10.0
+    """
+    given, thickness, _ = _chosen(flags, said, where)
+    if given is not None:
+        return given[0]
+    return -numbers[0] * (thickness or 0.0)
+
+
 def _chosen(
     flags: SpacingOptions, said: StackFile, where: Path
 ) -> tuple[tuple[float, ...] | None, float | None, str]:

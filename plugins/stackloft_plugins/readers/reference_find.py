@@ -1,0 +1,163 @@
+"""A reference object found in a picture, measured, and hidden from whoever looks for the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.reference import ReferenceKind
+from stackloft_plugins.readers.reference_shapes import (
+    LEVELS,
+    Shape,
+    contrast_with_plate,
+    reference_among,
+    shapes_at,
+)
+from stackloft_plugins.readers.reference_size import PixelSize, bar_size, disc_size
+
+_SMALL = 900  # pixels on the longer side of the copy in which objects are looked for
+_MARGIN = 0.10  # of its size, hidden around it: its shadow
+_MISSHAPEN = 0.012  # of its size
+_OBLIQUE = 0.06
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """A reference object in one picture."""
+
+    size: PixelSize
+    centre: tuple[float, float]
+    """(column, row), pixels"""
+    corner: tuple[int, int]
+    """(row, column) of the hidden window's first pixel."""
+    hidden: NDArray[np.bool_]
+    """True where the object and its shadow are, within the window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Why no reference object was found."""
+
+    reason: str
+    cut_off: bool = False
+    """True when what may be it touches the picture's border."""
+
+
+def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missing:
+    """Return the reference object of a picture, (rows, columns) or (rows, columns, 3).
+
+    Examples
+    --------
+    >>> scene = np.full((200, 300), 240, dtype=np.uint8)
+    >>> scene[60:160, 120:260] = 90
+    >>> scene[20:60, 20:60] = 120
+    >>> round(find_reference(scene, ReferenceKind.SQUARE).size.size, 2)
+    40.0
+    """
+    rows, columns = picture.shape[:2]
+    step = max(1.0, max(rows, columns) / _SMALL)
+    size = (round(columns / step), round(rows / step))
+    small = cv2.resize(_resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
+    contrast = contrast_with_plate(small)
+    best: tuple[float, Found] | None = None
+    cut_off = False
+    for level in LEVELS:
+        shapes = shapes_at(contrast, level)
+        cut_off |= _cut_in_a_corner(shapes)
+        shape = reference_among(shapes, kind)
+        measured = None if shape is None else _measured(picture, shape, kind, step)
+        if shape is None or measured is None:
+            continue
+        if best is None or (round(shape.to_corner, 2), measured.misfit) < (best[0], best[1].size.misfit):
+            others = [other for other in shapes if other is not shape]
+            best = round(shape.to_corner, 2), _found(measured, shape, others, step, (rows, columns))
+    if best is not None:
+        return best[1]
+    if cut_off:
+        return Missing("an object in a corner is cut off by the picture's border", cut_off=True)
+    return Missing(f"no {kind.value} in any corner that stands apart from the body")
+
+
+def hide(picture: NDArray[Any], found: Found) -> NDArray[Any]:
+    """Return the picture with plate where the reference object lay: the median colour around it."""
+    row, column = found.corner
+    height, width = found.hidden.shape
+    window = np.s_[row : row + height, column : column + width]
+    ring = cv2.dilate(found.hidden.astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
+    beside = picture[window][ring & ~found.hidden]
+    changed = picture.copy()
+    changed[window][found.hidden] = np.median(beside, axis=0).astype(picture.dtype)
+    return changed
+
+
+def _resizable(picture: NDArray[Any]) -> NDArray[Any]:
+    return picture if picture.dtype in {np.dtype("uint8"), np.dtype("uint16")} else picture.astype(np.float32)
+
+
+def _cut_in_a_corner(shapes: list[Shape]) -> bool:
+    return any(shape.cut_off and shape.to_corner < 0.4 for shape in shapes)
+
+
+def _measured(picture: NDArray[Any], shape: Shape, kind: ReferenceKind, step: float) -> PixelSize | None:
+    """Return the size on the whole picture's own pixels; None for what has not the shape when seen so."""
+    grey, (left, top) = _grey_window(picture, shape, step)
+    (x, y), sides, angle = shape.box
+    middle = ((x + 0.5) * step - 0.5 - left, (y + 0.5) * step - 0.5 - top)
+    lengths = (sides[0] * step, sides[1] * step)
+    if kind is ReferenceKind.DISC:
+        size = disc_size(grey, middle, 0.25 * sum(lengths))
+    else:
+        size = bar_size(grey, (middle, lengths, angle), kind)
+    if size is None or size.misfit > _MISSHAPEN + 0.3 / size.size or size.oblique > _OBLIQUE:
+        return None
+    return size
+
+
+def _grey_window(
+    picture: NDArray[Any], shape: Shape, step: float
+) -> tuple[NDArray[np.float32], tuple[int, int]]:
+    """Return the object's surroundings as one channel, the one in which it stands out best."""
+    x, y, width, height = (float(value) for value in cv2.boundingRect(shape.outline))
+    room = 0.1 * max(width, height) + 8 / step + 2
+    rows, columns = picture.shape[:2]
+    left, top = max(0, int((x - room) * step)), max(0, int((y - room) * step))
+    right = min(columns, int((x + width + room) * step) + 1)
+    bottom = min(rows, int((y + height + room) * step) + 1)
+    part = picture[top:bottom, left:right].astype(np.float32)
+    if part.ndim == 2:
+        return part, (left, top)
+    inside = np.zeros(part.shape[:2], np.uint8)
+    outline = (shape.outline.astype(np.float64) + 0.5) * step - 0.5 - [left, top]
+    cv2.drawContours(inside, [np.round(outline).astype(np.int32)], -1, 1, cv2.FILLED)
+    off = np.median(part[inside > 0], axis=0) - np.median(part[inside == 0], axis=0)
+    grey: NDArray[np.float32] = np.ascontiguousarray(part @ (off / np.abs(off).sum()), dtype=np.float32)
+    return grey, (left, top)
+
+
+def _found(size: PixelSize, shape: Shape, others: list[Shape], step: float, whole: tuple[int, int]) -> Found:
+    """Return the object with the window that hides it, which leaves every other object alone."""
+    x, y, width, height = (float(value) for value in cv2.boundingRect(shape.outline))
+    margin = _MARGIN * size.size + 3 + step
+    left, top = max(0, int(x * step - 2 * margin)), max(0, int(y * step - 2 * margin))
+    right = min(whole[1], int((x + width) * step + 2 * margin) + 1)
+    bottom = min(whole[0], int((y + height) * step + 2 * margin) + 1)
+    window = (bottom - top, right - left)
+    own = _drawn(shape, step, (left, top), window, margin)
+    for other in others:
+        own &= ~_drawn(other, step, (left, top), window, 2 + step)
+    centre = ((shape.centre[0] + 0.5) * step - 0.5, (shape.centre[1] + 0.5) * step - 0.5)
+    return Found(size, centre, (top, left), own)
+
+
+def _drawn(
+    shape: Shape, step: float, corner: tuple[int, int], window: tuple[int, int], margin: float
+) -> NDArray[np.bool_]:
+    mask = np.zeros(window, np.uint8)
+    outline = np.round((shape.outline.astype(np.float64) + 0.5) * step - 0.5 - corner).astype(np.int32)
+    cv2.drawContours(mask, [outline], -1, 1, cv2.FILLED)
+    reach = 2 * round(margin) + 1
+    return np.asarray(cv2.dilate(mask, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach))) > 0)
