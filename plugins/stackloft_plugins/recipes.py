@@ -8,7 +8,7 @@ from stackloft.model.bias import Bias
 _LOFTED = "corresponding points were joined wrongly, or an end lies elsewhere than was assumed"
 _SHAPES = "thin parts of neighbouring sections do not overlap, or an end lies elsewhere than was assumed"
 _LEVEL = "slices far apart make steps between them, and a level off the edge moves the surface"
-_FRUSTA = "they stop at the outermost sections and see no more than area and perimeter"
+_FRUSTA = "frusta stop at the outermost sections, and their sides are too large between elongated ones"
 
 loft = Recipe(
     steps=("reconstructor.loft", "integrator.surface-gauss"),
@@ -37,7 +37,7 @@ frustum = Recipe(
     summary="conical frusta between neighbouring sections (Sabliov et al. 2002; Zheng & Sun 2006); "
     "sees no more than each section's area and perimeter",
     volume_bias=Bias(-12.0, 1.0, _FRUSTA),
-    area_bias=Bias(-10.0, 2.0, _FRUSTA),
+    area_bias=Bias(-10.0, 8.0, _FRUSTA),
 )
 
 voxel = Recipe(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from stackloft.contracts.sink import Sink
@@ -66,52 +66,41 @@ class OwnSink:
 
 
 def decode_once(
-    segmentation: Segmentation,
-    own: Mapping[str, OwnSink],
-    others: Sequence[Sink],
-    wanted: str,
-    progress: Progress,
+    segmentation: Segmentation, own: Sequence[OwnSink], others: Sequence[Sink], progress: Progress
 ) -> tuple[Any, ...]:
     """Decode a stack once and feed everyone; return what the `others` give.
 
     Parameters
     ----------
     segmentation : Segmentation
-    own : mapping of identity to OwnSink
-        Their products, or the reasons why there are none, stay with them.
+    own : sequence of OwnSink
+        Their products, or the reasons why there are none, stay with them. When all have refused there is
+        no point in going on: the pass ends there.
     others : sequence of Sink
-        The caller's.
-    wanted : str
-        Whose product was asked for: when that one refuses there is no point in going on.
+        The caller's; they give nothing when the pass ends early.
     progress : Progress
         Told about each slice.
 
     Raises
     ------
     StackloftError
-        A slice cannot be decoded or segmented, or the wanted sink refuses.
+        A slice cannot be decoded or segmented.
     """
     # tracing needs OpenCV, which contours and surfaces given as such can do without
     from stackloft.sectioning.contour_sink import decoded_ahead  # noqa: PLC0415
 
-    sinks = (*own.values(), *others)
     progress.begin("sections", len(segmentation))
     try:
-        for sink in sinks:
+        for sink in (*own, *others):
             sink.begin(segmentation)
-        _raise(own[wanted])
         for index, picture, section in decoded_ahead(segmentation):
-            for sink in sinks:
+            for sink in (*own, *others):
                 sink.add(index, picture, section)
-            _raise(own[wanted])
+            if all(mine.error for mine in own):
+                return ()
             progress.advance()
-        for mine in own.values():
+        for mine in own:
             mine.end()
         return tuple(other.end() for other in others)
     finally:
         progress.end()
-
-
-def _raise(sink: OwnSink) -> None:
-    if sink.error is not None:
-        raise sink.error

@@ -30,7 +30,7 @@ from stackloft.pipeline.plan import Method, Plan, make_plan
 from stackloft.pipeline.progress import Progress, Silence
 from stackloft.pipeline.provenance import provenance_of
 from stackloft.pipeline.recipe_file import recipe_of
-from stackloft.pipeline.request import MeasureRequest
+from stackloft.pipeline.request import ALL_METHODS, MeasureRequest
 from stackloft.pipeline.section_rows import section_rows
 from stackloft.pipeline.workbench import Workbench
 
@@ -73,17 +73,18 @@ def measure(
     reading = _read(plan, request, product, listener)
     own = (PictureDigest(),) if isinstance(product, (SliceStack, Segmentation)) else ()
     bench = Workbench(plan, reading.product, listener, (*own, *sinks))
-    rows, measured = _run_methods(plan.methods, bench)
+    rows, measured = _run_methods(plan.methods, bench, every=request.method == ALL_METHODS)
     sections, skipped = _sections(bench)
     body = _measurement(rows, measured, sections, reading.product)
     products = _in_order(measured, bench)
+    again = replace(plan, methods=tuple(sorted(plan.methods, key=lambda x: x.name != body.volume.method)))
     taken, given = bench.sink_products[: len(own)], bench.sink_products[len(own) :]
     seconds = {**reading.seconds, **bench.stages, "total": time.perf_counter() - start}
     result = Result(
         source={"path": str(request.source), "reader": reading.name, "digest": (*taken, reading.digest)[0]},
         objects=(body,),
-        warnings=_warnings(plan, products, (*skipped, *disagreements(measured.found))),
-        recipe=recipe_of(plan, segmented=any(isinstance(item, Segmentation) for item in products)),
+        warnings=_warnings(plan, products, (*skipped, *measured.notices, *disagreements(measured.found))),
+        recipe=recipe_of(again, segmented=any(isinstance(item, Segmentation) for item in products)),
         provenance=provenance_of(plan, seconds),
     )
     return Outcome(result, products, given)
@@ -105,6 +106,7 @@ class _Measured:
     solid: LoftedSolid | None
     found: tuple[tuple[Method, Integral], ...] = ()
     """Every method's figures as its integrator gave them, for comparing them."""
+    notices: tuple[Notice, ...] = ()
 
 
 def _read(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> _Reading:
@@ -122,24 +124,44 @@ def _read(plan: Plan, request: MeasureRequest, product: Any, progress: Progress)
     return _Reading(found, plan.reader.loaded.name, digest, seconds)
 
 
-def _run_methods(methods: Sequence[Method], bench: Workbench) -> tuple[dict[str, MethodRow], _Measured]:
-    """Return every method's row, the primary one first; only the primary method's failure is raised."""
+def _run_methods(
+    methods: Sequence[Method], bench: Workbench, *, every: bool
+) -> tuple[dict[str, MethodRow], _Measured]:
+    """Return every method's row, the primary one first.
+
+    The primary method is the first one asked for, and its failure is raised; when `every` method was asked
+    for it is the first that gives both figures (or a volume at least), and only the failure of all is raised.
+    """
     rows: dict[str, MethodRow] = {}
-    measured = _Measured((), None)
-    found: list[tuple[Method, Integral]] = []
-    for number, method in enumerate(methods):
+    works: dict[str, list[str]] = {}
+    errors: list[StackloftError] = []
+    for method in methods:
         try:
-            rows[method.name], work = _run_method(method, bench)
+            rows[method.name], works[method.name] = _run_method(method, bench)
         except StackloftError as error:
-            if number == 0:
-                raise
+            errors.append(error)
+            if (not every and not rows) or len(errors) == len(methods):
+                raise errors[0] from None
             rows[method.name] = MethodRow(None, None, 0.0, str(error))
-            continue
-        found.append((method, bench.made[work[-1]]))
-        if number == 0:
-            solids = [bench.made[name] for name in work if isinstance(bench.made[name], LoftedSolid)]
-            measured = _Measured(tuple(work), solids[0] if solids else None)
-    return rows, replace(measured, found=tuple(found))
+    primary = _primary(rows) if every else methods[0].name
+    solids = [bench.made[name] for name in works[primary] if isinstance(bench.made[name], LoftedSolid)]
+    found = [(method, bench.made[works[method.name][-1]]) for method in methods if method.name in works]
+    first = methods[0].name
+    told = Notice(
+        "main-method",
+        f"{first} gives no figures ({rows[first].error}); the main figures are those of {primary}",
+    )
+    notices = () if primary == first else (told,)
+    ordered = {primary: rows[primary]} | rows
+    return ordered, _Measured(tuple(works[primary]), solids[0] if solids else None, tuple(found), notices)
+
+
+def _primary(rows: dict[str, MethodRow]) -> str:
+    """Return the first method with both figures, or with a volume, or with any."""
+    given = {name: row for name, row in rows.items() if row.error is None}
+    both = [name for name, row in given.items() if row.volume is not None and row.area is not None]
+    volumes = [name for name, row in given.items() if row.volume is not None]
+    return (*both, *volumes, *given)[0]
 
 
 def _run_method(method: Method, bench: Workbench) -> tuple[MethodRow, list[str]]:

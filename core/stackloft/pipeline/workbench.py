@@ -97,35 +97,41 @@ class Workbench:
     def _decoded(self, identity: str, step: Step | None, item: Item) -> Item:
         """Return what the decoding pass gives under `identity`, run now unless it has been."""
         if identity not in self.made and identity not in self._failures:
-            self._decode(item, identity, step)
+            self._decode(item, step)
         if identity in self._failures:
             raise self._failures[identity]
         return Item(self.made[identity], identity)
 
-    def _decode(self, item: Item, wanted: str, step: Step | None) -> None:
+    def _decode(self, item: Item, step: Step | None) -> None:
         """Run the one decoding pass; the caller's sinks see the slices of the plan's own segmentation."""
         from stackloft.sectioning.contour_sink import ContourSink  # noqa: PLC0415 - it needs OpenCV
 
         contours = f"contours({item.identity})"
-        steps = {_identity(one, item): one for one in (*self._streaming(), *([step] if step else []))}
+        planned = self._streaming() if self._is_own(item) else ()
+        steps = {_identity(one, item): one for one in (*planned, *([step] if step else []))}
         own = {contours: OwnSink(ContourSink)} | {
             key: OwnSink(x.instance.sink, x) for key, x in steps.items()
         }
         own = {key: sink for key, sink in own.items() if key not in self.made and key not in self._failures}
+        others, self._sinks = (self._sinks, ()) if self._is_own(item) else ((), self._sinks)
         start = time.perf_counter()
         try:
-            given = decode_once(self._blamed(item.value), own, self._sinks, wanted, self._progress)
+            given = decode_once(self._blamed(item.value), tuple(own.values()), others, self._progress)
+            self.sink_products = self.sink_products or given
         except StackloftError as error:
-            refused = own[wanted].error is error
-            self._failures |= {wanted: error} if refused else dict.fromkeys(own, error)
-        else:
-            self.sink_products, self._sinks = self.sink_products or given, ()
-            self._failures |= {key: sink.error for key, sink in own.items() if sink.error is not None}
-            self.made |= {key: sink.product for key, sink in own.items() if sink.error is None}
+            self._failures |= dict.fromkeys(own, error)
+        self._failures |= {key: sink.error for key, sink in own.items() if sink.error is not None}
+        self.made |= {key: sink.product for key, sink in own.items() if key not in self._failures}
         whole = time.perf_counter() - start
         for key, sink in own.items():
             self._took(key, steps[key].key if key in steps else "sections", sink.seconds)
         self._took(contours, "sections", whole - sum(sink.seconds for sink in own.values()))
+
+    def _is_own(self, item: Item) -> bool:
+        """Return whether `item` is what was read, or what the plan's segmenter made of it."""
+        segmenter = self._plan.segmenter
+        made = _identity(segmenter, self.root) if segmenter is not None else None
+        return item.identity in {self.root.identity, made}
 
     def _streaming(self) -> Iterator[Step]:
         """Yield the methods' first steps that take what was read slice by slice."""
