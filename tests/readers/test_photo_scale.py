@@ -71,11 +71,18 @@ def test_a_reference_and_the_camera_give_the_scale_of_each_slice(tmp_path, name,
 
 
 @pytest.mark.prove
-@pytest.mark.parametrize(("name", "distance", "plane", "way"), CASES)
-def test_all_pinhole_stacks(tmp_path, name, distance, plane, way, record_property):
-    volume, area = check_way(tmp_path, name, distance, plane, way)
-    record_property("volume", f"{100 * volume:+.3f} %")
-    record_property("area", f"{100 * area:+.3f} %")
+def test_all_pinhole_stacks(tmp_path, proof):
+    rows = []
+    for name, distance, plane, way in CASES:
+        folder = tmp_path / f"{name}{distance:g}{plane}{way}"
+        volume, area = check_way(folder, name, distance, plane, way)
+        rows.append((name, f"{distance:g} mm", plane, way, f"{100 * volume:+.3f} %", f"{100 * area:+.3f} %"))
+    proof(
+        "photo-scale",
+        "A reference one slice below the face and the camera's distance: V within 0.5 %, S within 1 %",
+        ("body", "camera", "cut plane", "pictures with reference", "V error", "S error"),
+        rows,
+    )
 
 
 @pytest.mark.parametrize("kind", ["disc", "square", "ruler"])
