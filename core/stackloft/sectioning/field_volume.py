@@ -58,6 +58,11 @@ class FieldVolume:
                     found=f"{values.min():g} to {values.max():g} mm",
                     fix="use --method loft or isosurface, which take the slices where they are",
                 )
+        if stack.origins is not None and np.ptp(stack.origins, axis=0).max() > EVEN * pixels.mean():
+            raise InputError(
+                "the slices' pixels are shifted against each other, so that the voxels form no lattice",
+                fix="use --method loft or isosurface, which take the slices where they are",
+            )
         row, column = pixels.mean(axis=0)
         return np.asarray(stack.affine[:3, :3] @ np.diag([column, row, gaps.mean()]))
 

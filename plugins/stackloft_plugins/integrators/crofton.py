@@ -29,8 +29,9 @@ class Crofton:
 
     Lattice lines give the crossings of a direction; the directions and their weights are chosen for the
     voxels' actual spacing, sheared slices included (Legland, Kiêu & Devaux 2007, Image Anal. Stereol. 26:83),
-    and lines too short to be hit are made up for. Assumes an evenly spaced lattice and a boundary that is
-    smooth over a few slices: errs low at sharp edges and on details thinner than that, high on noisy masks.
+    and lines too short to be hit are made up for (`stackloft.geometry.set_covariance`). Assumes an evenly
+    spaced lattice and a body thicker than a few slices: errs low on details thinner than that and, by up to
+    4 %, on plane faces along the lattice; high on noisy masks.
     ``3`` and ``13`` take the plain neighbour directions, Voronoi-weighted at the actual spacing, for
     comparison: on slices 10 pixels apart few of their lines run between the axis and the slice plane. The
     volume is the voxel count.

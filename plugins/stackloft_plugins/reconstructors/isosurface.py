@@ -91,9 +91,11 @@ def _placed(grid: FloatArray, first_pixel: tuple[int, int], stack: SliceStack) -
     ends = np.diff(z)[[0, -1]] if len(z) > 1 else np.full(2, _single_thickness(stack))
     slices = np.arange(-1, len(z) + 1)
     height = np.interp(grid[:, 2], slices, np.concatenate([[z[0] - ends[0]], z, [z[-1] + ends[1]]]))
-    row, column = (np.interp(grid[:, 2], slices[1:-1], stack.pixel_spacing[:, k]) for k in (0, 1))
+    origins = np.zeros((len(z), 2)) if stack.origins is None else stack.origins
+    per_slice = np.concatenate([stack.pixel_spacing, origins], axis=1).T
+    row, column, left, top = (np.interp(grid[:, 2], slices[1:-1], values) for values in per_slice)
     points = np.column_stack(
-        [(grid[:, 0] + first_pixel[1]) * column, (grid[:, 1] + first_pixel[0]) * row, height]
+        [left + (grid[:, 0] + first_pixel[1]) * column, top + (grid[:, 1] + first_pixel[0]) * row, height]
     )
     return np.asarray(points @ stack.affine[:3, :3].T + stack.affine[:3, 3])
 
