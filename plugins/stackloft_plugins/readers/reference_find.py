@@ -23,6 +23,7 @@ _SMALL = 900  # pixels on the longer side of the copy in which objects are looke
 _MARGIN = 0.10  # of its size, hidden around it: its shadow
 _MISSHAPEN = 0.012  # of its size
 _OBLIQUE = 0.06
+_SAME_PLACE = 0.06  # of the picture's sides
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,20 +64,19 @@ def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missin
     size = (round(columns / step), round(rows / step))
     small = cv2.resize(_resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
     contrast = contrast_with_plate(small)
-    best: tuple[float, Found] | None = None
+    sightings: list[tuple[float, Found]] = []
     cut_off = False
     for level in LEVELS:
         shapes = shapes_at(contrast, level)
         cut_off |= _cut_in_a_corner(shapes)
         shape = reference_among(shapes, kind)
         measured = None if shape is None else _measured(picture, shape, kind, step)
-        if shape is None or measured is None:
-            continue
-        if best is None or (round(shape.to_corner, 2), measured.misfit) < (best[0], best[1].size.misfit):
+        if shape is not None and measured is not None:
             others = [other for other in shapes if other is not shape]
-            best = round(shape.to_corner, 2), _found(measured, shape, others, step, (rows, columns))
-    if best is not None:
-        return best[1]
+            found = _found(measured, shape, others, step, (rows, columns))
+            sightings.append((shape.to_corner, found))
+    if sightings:
+        return _outermost(sightings)
     if cut_off:
         return Missing("an object in a corner is cut off by the picture's border", cut_off=True)
     return Missing(f"no {kind.value} in any corner that stands apart from the body")
@@ -92,6 +92,13 @@ def hide(picture: NDArray[Any], found: Found) -> NDArray[Any]:
     changed = picture.copy()
     changed[window][found.hidden] = np.median(beside, axis=0).astype(picture.dtype)
     return changed
+
+
+def _outermost(sightings: list[tuple[float, Found]]) -> Found:
+    """Return the largest of what was seen nearest to a corner: a coin's rim, not the ring stamped within."""
+    nearest = min(to_corner for to_corner, _ in sightings)
+    same = [found for to_corner, found in sightings if to_corner <= nearest + _SAME_PLACE]
+    return max(same, key=lambda found: found.size.size)
 
 
 def _resizable(picture: NDArray[Any]) -> NDArray[Any]:
