@@ -1,10 +1,8 @@
-"""``stackloft plugins list`` and ``stackloft plugins show``."""
+"""``stackloft plugins show``: what a plug-in does, its options, where it comes from, how it is used."""
 
 from __future__ import annotations
 
 import inspect
-import json
-import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,38 +10,21 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from stackloft.cli.plugin_example import example_of
+from stackloft.cli.plugin_list import row
+from stackloft.cli.plugin_names import listings_called, print_json
 from stackloft.cli.screen import console
-from stackloft.contracts.families import FAMILIES
 from stackloft.contracts.recipe import Recipe
-from stackloft.model.errors import PluginError
+from stackloft.registry.alone import load_each_alone
 from stackloft.registry.fields import OptionField, fields_of
-from stackloft.registry.find import nearest
+from stackloft.registry.glance import glance
 from stackloft.registry.loading import Loaded, Quarantined, load
 from stackloft.registry.options_model import plain
-from stackloft.registry.scan import Listing, catalogue
+from stackloft.registry.scan import Listing
 
 Outcome = Loaded | Quarantined
 
-_COLUMNS = ("family", "name", "distribution", "version", "state")
-
 _SIGNS = {"ge": "≥", "gt": ">", "le": "≤", "lt": "<"}
-
-
-def show_list(*, as_json: bool) -> None:
-    """Print every registered plug-in with its family, distribution, version and state."""
-    outcomes = [load(listing) for listing in catalogue()]
-    if as_json:
-        _print_json([_row(outcome) for outcome in outcomes])
-        return
-    table = Table(*_COLUMNS, box=None, padding=(0, 2, 0, 0))
-    for outcome in outcomes:
-        style = "red" if isinstance(outcome, Quarantined) else ""
-        table.add_row(*(Text(_row(outcome)[column]) for column in _COLUMNS), style=style)
-    screen = console()
-    screen.print(table)
-    for outcome in outcomes:
-        if isinstance(outcome, Quarantined):
-            screen.print(Text(f"{outcome.listing.key}: {outcome.reason}", style="red"))
 
 
 def show(name: str, *, as_json: bool) -> None:
@@ -59,9 +40,9 @@ def show(name: str, *, as_json: bool) -> None:
     PluginError
         No plug-in has that name.
     """
-    outcomes = [load(listing) for listing in _called(name)]
+    outcomes = [_loaded(listing) for listing in listings_called(name)]
     if as_json:
-        _print_json([_details(outcome) for outcome in outcomes])
+        print_json([_details(outcome) for outcome in outcomes])
         return
     screen = console()
     for number, outcome in enumerate(outcomes):
@@ -70,43 +51,27 @@ def show(name: str, *, as_json: bool) -> None:
         _describe(screen, outcome)
 
 
-def _called(name: str) -> list[Listing]:
-    family, dot, rest = name.partition(".")
-    within, bare = (family, rest) if dot and family in FAMILIES else (None, name)
-    listings = [
-        item for item in catalogue() if bare in {item.name, item.qualified} and within in {None, item.family}
-    ]
-    if not listings:
-        names = sorted({item.name for item in catalogue(within)})
-        raise PluginError(f"no plug-in is called {name!r}", fix=nearest(bare, names))
-    return listings
-
-
-def _row(outcome: Outcome) -> dict[str, str]:
-    listing = outcome.listing
-    row = {
-        "family": listing.family,
-        "name": listing.qualified if listing.clash else listing.name,
-        "distribution": listing.distribution,
-        "version": listing.version,
-        "state": "ok",
-        "reason": "",
-    }
-    if isinstance(outcome, Quarantined):
-        return {**row, "state": "quarantined", "reason": outcome.reason}
-    return row
+def _loaded(listing: Listing) -> Outcome:
+    """Return the plug-in; a stranger's is tried in a process of its own first, as it may crash that."""
+    if listing.distribution != "stackloft":
+        (health,) = load_each_alone([listing])
+        if health.reason:
+            return Quarantined(listing, health.reason, health.traceback)
+    return load(listing)
 
 
 def _details(outcome: Outcome) -> dict[str, Any]:
-    row: dict[str, Any] = {**_row(outcome), "target": outcome.listing.target}
+    seen = glance(outcome.listing)
+    said: dict[str, Any] = {**row(seen), "source": str(seen.path) if seen.path else None}
     if isinstance(outcome, Quarantined):
-        return {**row, "traceback": outcome.traceback}
+        return {**said, "state": "quarantined", "reason": outcome.reason, "traceback": outcome.traceback}
     plugin = outcome.plugin
+    said |= {"api": plugin.api, "example": example_of(outcome)}
     if isinstance(plugin, Recipe):
         options = {key: dict(values) for key, values in plugin.options.items()}
-        return {**row, "about": plugin.summary, "steps": list(plugin.steps), "options": options}
+        return {**said, "about": plugin.summary, "steps": list(plugin.steps), "options": options}
     return {
-        **row,
+        **said,
         "about": about(plugin),
         "accepts": [kind.__name__ for kind in plugin.accepts],
         "produces": [kind.__name__ for kind in plugin.produces],
@@ -135,8 +100,11 @@ def about(plugin: Any) -> str:
 def _describe(screen: Console, outcome: Outcome) -> None:
     listing = outcome.listing
     screen.print(Text(f"{listing.family} {listing.name}", style="bold"))
-    screen.print(Text(f"{listing.distribution} {listing.version}, {listing.target}", style="dim"))
     details = _details(outcome)
+    api = f", API {details['api']}" if details["api"] else ""
+    where = details["source"] or listing.target
+    screen.print(Text(f"{listing.distribution} {listing.version}{api}", style="dim"))
+    screen.print(Text(f"source: {where}", style="dim"), soft_wrap=True)
     if isinstance(outcome, Quarantined):
         screen.print(Text(f"quarantined: {outcome.reason}", style="red"))
         screen.print(Text(outcome.traceback))
@@ -146,10 +114,16 @@ def _describe(screen: Console, outcome: Outcome) -> None:
         screen.print(Text(f"steps: {' → '.join(details['steps'])}"))
         for address, values in details["options"].items():
             screen.print(Text(f"sets {address}: {values}"))
+        _print_example(screen, details)
         return
     screen.print(Text(f"takes {_either(details['accepts'])}; gives {_either(details['produces'])}"))
     if details["options"]:
         screen.print(_option_table(fields_of(outcome.plugin)))
+    _print_example(screen, details)
+
+
+def _print_example(screen: Console, details: dict[str, Any]) -> None:
+    screen.print(Text(f"example: {details['example']}"), soft_wrap=True)
 
 
 def _either(names: Sequence[str]) -> str:
@@ -172,8 +146,3 @@ def _allowed(field: OptionField) -> str:
     bounds = ", ".join(f"{_SIGNS[key]} {value:g}" for key, value in field.bounds.items())
     unit = f" {field.unit}" if field.unit else ""
     return f"{field.type_name}{unit}{' ' + bounds if bounds else ''}"
-
-
-def _print_json(value: Any) -> None:
-    json.dump(value, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
-    sys.stdout.write("\n")

@@ -1,0 +1,50 @@
+"""The signatures of ``stackloft plugins …``."""
+
+# ruff: noqa: PLC0415 - imports inside the commands keep `stackloft --help` quick
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from stackloft.cli import arguments as a
+from stackloft.cli.guard import guarded
+
+plugin_commands = typer.Typer(
+    help="What is installed, which options it has, whether it works, and how to add to it.",
+    no_args_is_help=True,
+)
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[NAME…]", help="Only these plug-ins.  [default: all, and the machine as well]"),
+]
+
+
+@plugin_commands.command("list")
+@guarded
+def plugins_list(json: a.Json = False) -> None:
+    """List every plug-in with its family, version, distribution, API version and state."""
+    from stackloft.cli.plugin_list import show_list
+
+    show_list(as_json=json)
+
+
+@plugin_commands.command("show")
+@guarded
+def plugins_show(name: a.PluginName, json: a.Json = False) -> None:
+    """Show what a plug-in does, its options with units, bounds, defaults and source, and an example."""
+    from stackloft.cli.plugins import show
+
+    show(name, as_json=json)
+
+
+@plugin_commands.command("doctor")
+@guarded
+def plugins_doctor(names: Names = None, json: a.Json = False) -> None:
+    """Load each plug-in in a process of its own; look for codecs, system libraries and rendering."""
+    from stackloft.cli.doctor.report import run
+
+    if not run(names or (), as_json=json):
+        raise typer.Exit(1)
