@@ -40,6 +40,8 @@ class Segmentation:
     labels: tuple[int, ...] = ()
     """The labels that a label map's pictures hold, one for each body; touching labels are bodies of their
     own. Empty for grey levels."""
+    fill_voids: bool = False
+    """Whether background that is closed in on every side counts as body."""
 
     def __len__(self) -> int:
         return len(self.stack)

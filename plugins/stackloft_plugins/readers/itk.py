@@ -15,6 +15,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.itk_header import ItkHeader, form_of, read_header
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
@@ -44,6 +45,7 @@ class ItkReader:
     produces: ClassVar[tuple[type, ...]] = (SliceStack, Segmentation)
 
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
+    object: str = option(LARGEST, "label maps: which body, largest or its label")
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a file that begins as NRRD, MetaImage or NIfTI, packed by gzip or not."""
@@ -71,7 +73,7 @@ class ItkReader:
         volume = _Volume(path, header)
         told = {"positions": f"{header.form} header", "pixel size": f"{header.form} header"}
         stack = volume_stack(volume.grid(), volume, path, told, _unit_notice(header, path))
-        return as_labels(stack, self.labels)
+        return as_labels(stack, self.labels, self.object)
 
 
 class _Volume:

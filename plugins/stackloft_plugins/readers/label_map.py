@@ -7,6 +7,7 @@ import numpy as np
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.object_choice import LARGEST, one_object
 
 CHOICES = ("auto", "yes", "no")
 MOST_LABELS = 32
@@ -14,14 +15,16 @@ MOST_LABELS = 32
 _SAMPLED = 9
 
 
-def as_labels(stack: SliceStack, wanted: str) -> SliceStack | Segmentation:
-    """Return the stack's Segmentation when its pictures are labels, else the stack.
+def as_labels(stack: SliceStack, wanted: str, body: str = LARGEST) -> SliceStack | Segmentation:
+    """Return the Segmentation of one label when the pictures are labels, else the stack.
 
     Parameters
     ----------
     stack : SliceStack
     wanted : {"auto", "yes", "no"}
         ``auto``: whole numbers of few values in a sample of slices, 0 among them, are labels.
+    body : str
+        ``largest`` or a label.
 
     Raises
     ------
@@ -33,10 +36,11 @@ def as_labels(stack: SliceStack, wanted: str) -> SliceStack | Segmentation:
     >>> from pathlib import Path
     >>> from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
     >>> picture = np.zeros((8, 8), dtype=np.uint8)
-    >>> picture[2:5, 2:5] = 3
+    >>> picture[2:6, 2:6] = 3
     >>> grid = VoxelGrid((2, 8, 8), (1.0, 1.0), np.array([0.0, 1.0]))
-    >>> as_labels(volume_stack(grid, lambda k: picture, Path("a.nrrd"), {}), "auto").labels
-    (3,)
+    >>> volume = volume_stack(grid, lambda k: picture, Path("a.nrrd"), {})
+    >>> as_labels(volume, "auto").stack.provenance["object"]
+    '3'
     """
     if wanted == "no" or (wanted == "auto" and not _seem_labels(stack)):
         return stack
@@ -46,7 +50,8 @@ def as_labels(stack: SliceStack, wanted: str) -> SliceStack | Segmentation:
     labels.discard(0)
     if not labels:
         raise InputError("the label map holds no label", where=stack.names[0])
-    return Segmentation(stack, _field_of, binary=True, labels=tuple(sorted(labels)))
+    every = Segmentation(stack, _field_of, binary=True, labels=tuple(sorted(labels)))
+    return one_object(every, body)
 
 
 def _field_of(number: int, picture: Picture) -> SectionField:  # noqa: ARG001 - a field_of

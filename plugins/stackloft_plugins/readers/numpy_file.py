@@ -16,6 +16,7 @@ from stackloft.model.arrays import read_only
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.block_spacing import FileSpacing, block_spacing
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
 from stackloft_plugins.readers.section_spacing import SpacingOptions
@@ -55,6 +56,7 @@ class NumpyReader:
     )
     array: str = option("", "name of the array in an .npz file; the only volume in it when empty")
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
+    object: str = option(LARGEST, "label maps: which body, largest or its label")
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a file that begins as NumPy's, 0 otherwise."""
@@ -81,7 +83,7 @@ class NumpyReader:
         flags = SpacingOptions(self.pixel_size, self.thickness, self.positions)
         spacing = block_spacing(flags, volume.said(), volume.shape[0], path)
         grid = VoxelGrid(volume.shape, spacing.pixel, spacing.positions)
-        return as_labels(volume_stack(grid, volume, path, spacing.provenance), self.labels)
+        return as_labels(volume_stack(grid, volume, path, spacing.provenance), self.labels, self.object)
 
 
 class _Volume:

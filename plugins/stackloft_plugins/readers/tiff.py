@@ -12,6 +12,7 @@ from stackloft.contracts.stack_file import load_stack_file
 from stackloft.model.errors import InputError, StackloftError
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.block_spacing import FileSpacing, block_spacing
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
 from stackloft_plugins.readers.picture_kinds import natural_key
@@ -52,6 +53,7 @@ class TiffReader:
         None, "position of every slice along the axis", unit="mm"
     )
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
+    object: str = option(LARGEST, "label maps: which body, largest or its label")
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a TIFF file, less for a folder of them, 0 for anything else."""
@@ -84,7 +86,7 @@ class TiffReader:
         grid = VoxelGrid(shape, spacing.pixel, spacing.positions)
         names = [_name(pages, k) for pages, k in slices]
         stack = volume_stack(grid, _Decoder(slices), path, spacing.provenance, names=names)
-        return as_labels(stack, self.labels)
+        return as_labels(stack, self.labels, self.object)
 
 
 class _Decoder:

@@ -16,9 +16,11 @@ import numpy as np
 from stackloft.contracts.options import option
 from stackloft.model.errors import UsageError
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.object_choice import LARGEST, one_object
 from stackloft_plugins.segmenters.grey import CHANNELS
 from stackloft_plugins.segmenters.histogram_levels import METHODS
+from stackloft_plugins.segmenters.slab_field import SlabRules, slab_segmentation
 from stackloft_plugins.segmenters.slice_field import LevelRules, mask_field, slice_field
 
 
@@ -53,12 +55,24 @@ class HistogramSegmenter:
     )
     threshold: float | None = option(None, "grey level of the boundary; given, no other is sought")
     scope: str = option(
-        "slice", "a threshold for each slice, or their median for the stack", choices=("slice", "stack")
+        "auto",
+        "a threshold for each slice, or one for the stack; auto: one for scans, else for each slice",
+        choices=("auto", "slice", "stack"),
     )
+    window: tuple[float, float] | None = option(
+        None, "scans: least and greatest grey level (HU) of the body; given, no threshold counts"
+    )
+    voids: str = option(
+        "fill", "scans: whether voids that are closed on every side count as body", choices=("fill", "keep")
+    )
+    object: str = option(LARGEST, "scans: which body, largest or its rank by size from 1")
     channel: str = option("luminance", "what grey is made of", choices=tuple(CHANNELS))
 
     def segment(self, stack: SliceStack) -> Segmentation:
         """Return the segmentation; slices are decoded here only when one threshold serves all.
+
+        A scan's one threshold comes from a sample of at most 24 slices (`slab_level`); all of its slices are
+        then looked through for bodies, and one of them is segmented.
 
         Raises
         ------
@@ -67,6 +81,10 @@ class HistogramSegmenter:
         """
         if self.method == "manual" and self.threshold is None:
             raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
+        if stack.kind is SectionKind.SLAB and self.scope != "slice":
+            fill = self.voids == "fill"
+            rules = SlabRules(self.method, self.threshold, self.window, self.channel, fill)
+            return one_object(slab_segmentation(stack, rules), self.object)
         threshold = self.threshold
         if self.scope == "stack" and threshold is None:
             threshold = self._median_threshold(stack)
