@@ -8,7 +8,8 @@ from importlib.metadata import version
 import pytest
 
 HEAVY = ("numpy", "scipy", "cv2", "PIL", "vtk", "vtkmodules", "matplotlib", "SimpleITK", "skimage")
-COMMANDS = ["measure", "info", "phantom", "plugins list", "plugins show", "regress", "convergence"]
+STUDIES = ["regress", "convergence", "accuracy"]
+COMMANDS = ["measure", "info", "phantom", "plugins list", "plugins show", "plugins doctor", *STUDIES]
 
 
 @pytest.mark.parametrize(

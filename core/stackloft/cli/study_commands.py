@@ -75,3 +75,33 @@ def convergence(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer
     request = request_of(source, reader=reader, method=method, flags=flags, settings=own)
     percent = None if tolerance is None else parse_percent(tolerance, "--tolerance")
     run(request, Output(out, json, quiet, percent, units.value))
+
+
+Bodies = Annotated[
+    list[str] | None,
+    typer.Option("--body", metavar="NAME", help="A body or phantom; may be repeated.  [default: all]"),
+]
+Axes = Annotated[
+    str | None,
+    typer.Option("--axis", metavar="NAME,…", help="sections, points, pixel, spacing, pose.  [default: all]"),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Two coarse values of each axis.")]
+Methods = Annotated[str | None, typer.Option("--method", metavar="NAME,…", help="[default: all]")]
+
+
+@study_commands.command()
+@guarded
+def accuracy(
+    out: a.Out = None,
+    json: a.Json = False,
+    quiet: a.Quiet = False,
+    quick: Quick = False,
+    method: Methods = None,
+    body: Bodies = None,
+    axis: Axes = None,
+) -> None:
+    """Run every method on bodies whose volume and area are known: errors and orders of convergence."""
+    from stackloft.cli.accuracy import Output, request_of, run
+
+    request = request_of(a.names_of(method), body or (), a.names_of(axis), quick=quick)
+    run(request, Output(out, json, quiet))
