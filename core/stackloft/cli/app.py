@@ -10,6 +10,7 @@ import typer
 
 from stackloft.cli import arguments as a
 from stackloft.cli.guard import guarded
+from stackloft.cli.plugin_commands import plugin_commands
 from stackloft.cli.study_commands import study_commands
 
 app = typer.Typer(
@@ -162,23 +163,4 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
 
 
 app.add_typer(study_commands)
-plugins = typer.Typer(help="What is installed, and which options it has.", no_args_is_help=True)
-app.add_typer(plugins, name="plugins")
-
-
-@plugins.command("list")
-@guarded
-def plugins_list(json: a.Json = False) -> None:
-    """List every plug-in with its family, distribution, version and state."""
-    from stackloft.cli.plugins import show_list
-
-    show_list(as_json=json)
-
-
-@plugins.command("show")
-@guarded
-def plugins_show(name: a.PluginName, json: a.Json = False) -> None:
-    """Show what a plug-in does, and its options with units, bounds, defaults and source."""
-    from stackloft.cli.plugins import show
-
-    show(name, as_json=json)
+app.add_typer(plugin_commands, name="plugins")

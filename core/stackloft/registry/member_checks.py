@@ -34,7 +34,11 @@ def faults_of(family: str, plugin: Any) -> tuple[str, ...]:
     """
     if family == "recipe":
         return tuple(_recipe_faults(plugin))
-    return (*_api_faults(plugin), *_dataclass_faults(plugin), *_member_faults(family, plugin))
+    return (
+        *api_faults(getattr(plugin, "api", None)),
+        *_dataclass_faults(plugin),
+        *_member_faults(family, plugin),
+    )
 
 
 def minor_api_notice(key: str, api: str) -> tuple[Notice, ...]:
@@ -49,8 +53,16 @@ def _version(api: str) -> tuple[int, ...]:
     return tuple(int(part) for part in f"{api}.0".split(".")[:2])
 
 
-def _api_faults(plugin: Any) -> list[str]:
-    api = getattr(plugin, "api", None)
+def api_faults(api: Any) -> list[str]:
+    """Return why a plug-in that says it is written for contract `api` is refused; empty when it is not.
+
+    Another major version is refused; a later minor one is only noticed (`minor_api_notice`).
+
+    Examples
+    --------
+    >>> api_faults("1.7"), api_faults("2")
+    ([], ["api 2 does not fit this stackloft's contract 1"])
+    """
     if api is None:
         return ["has no api version"]
     if not isinstance(api, str) or not all(part.isdigit() for part in api.split(".")):
@@ -94,7 +106,7 @@ def _member_faults(family: str, plugin: Any) -> list[str]:
 def _recipe_faults(recipe: Any) -> list[str]:
     if not isinstance(recipe, Recipe):
         return [f"is not a Recipe but {type(recipe).__name__}"]
-    faults = _api_faults(recipe)
+    faults = api_faults(recipe.api)
     if not recipe.steps:
         faults.append("has no steps")
     for step in recipe.steps:

@@ -1,0 +1,1 @@
+"""``stackloft plugins doctor``: what works here, what does not, and what to install."""
