@@ -46,8 +46,8 @@ def unmatched_edges(faces: IntArray) -> int:
 def mesh_integrals(vertices: FloatArray, faces: IntArray) -> tuple[float, float]:
     """Return signed volume (mm³, positive when faces point outwards) and area (mm²).
 
-    The volume by the divergence theorem, summed over tetrahedra (Lien & Kajiya 1984, IEEE Comput. Graph.
-    Appl. 4:35) about the surface's own middle, so that a body far from the origin loses no digits.
+    The volume by the divergence theorem, summed over tetrahedra (Lien & Kajiya 1984, IEEE CG&A
+    4(10):35) about the surface's own middle, so that a body far from the origin loses no digits.
 
     Parameters
     ----------

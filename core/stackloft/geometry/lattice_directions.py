@@ -11,8 +11,8 @@ For each member of a quasi-uniform set the lattice vector nearest in direction i
 longer than a few pitches; a direction's weight is the share of the sphere nearest to it (spherical Voronoi
 cell), corrected as little as possible so that even spherical harmonics up to degree 4 integrate exactly.
 Crofton's formula with Voronoi weights at the actual spacing: Legland, Kiêu & Devaux (2007), Image Anal.
-Stereol. 26:83. The correction is a least-squares one, as for scattered quadrature points (Sloan & Womersley
-2004, Adv. Comput. Math. 21:107).
+Stereol. 26:83. The correction is the least-squares one of scattered quadrature points (Sloan & Womersley
+2004, Extremal systems of points and numerical integration on the sphere).
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ class VolumeSink:
     grey : bool
         True: grey levels (4 bytes a voxel); False: body or not (1 byte).
     limit : float
-        Memory for the volume, MB.
+        Memory for the volume, MB; while a method works on it, it may need twice or three times as much.
     """
 
     def __init__(self, finish: Callable[[FieldVolume], Any], *, grey: bool, limit: float) -> None:

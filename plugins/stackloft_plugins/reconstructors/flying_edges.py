@@ -47,7 +47,10 @@ def zero_surface(field: NDArray[Any]) -> tuple[FloatArray, IntArray]:
     as_vtk: Any = numpy_support.numpy_to_vtk  # VTK has no annotations
     as_numpy: Any = numpy_support.vtk_to_numpy
     values = np.ascontiguousarray(field, dtype=np.float32)
-    values = np.where(values == 0.0, np.float32(-_APART * max(float(np.abs(values).max()), 1e-30)), values)
+    nodes = values == 0.0
+    if nodes.any():
+        largest = max(float(values.max()), -float(values.min()), 1e-30)
+        values = np.where(nodes, np.float32(-_APART * largest), values)
     image = vtkImageData()
     image.SetDimensions(*values.shape[::-1])
     image.GetPointData().SetScalars(as_vtk(values.ravel(), deep=False))
