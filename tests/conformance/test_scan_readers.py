@@ -17,7 +17,7 @@ from stackloft.testing.phantoms.scan_volume import ScanVolume
 
 
 def volume(slices, **changes):
-    rows, columns = np.mgrid[:40, :52]
+    rows, columns = np.mgrid[:60, :80]
     pictures = tuple(
         np.where((rows - 20) ** 2 + (columns - 25 - k % 7) ** 2 < (9 + k % 5) ** 2, 40, -1000).astype(
             np.int16
@@ -25,7 +25,7 @@ def volume(slices, **changes):
         + np.random.default_rng(k).normal(0, 9, rows.shape).astype(np.int16)
         for k in range(slices)
     )
-    grid = ScanGrid(2.5 * np.arange(slices) - 31.7, 2.5, np.array([-12.3, 8.1]), (40, 52), (0.7, 0.4), 0.0)
+    grid = ScanGrid(2.5 * np.arange(slices) - 31.7, 2.5, np.array([-12.3, 8.1]), (60, 80), (0.7, 0.4), 0.0)
     turn = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.0, 0.8, -0.6]])
     return ScanVolume("disc", pictures, grid, turn, np.array([3.3, -71.0, 12.9]), **changes)
 
@@ -115,7 +115,8 @@ CASES = {
     "npy": ReaderCase(NUMPY, npy, GIVEN, tuple(GIVEN)),
     "npz": ReaderCase(NUMPY, npz, without_spacing=npz_without_spacing),
 }
-UNPACKED = {"npz": {"read-small-memory": "an .npz is unpacked whole, first to tell labels from grey levels"}}
+WHOLE = {"read-small-memory": "a packed volume is unpacked whole, first to tell labels from grey levels"}
+UNPACKED = dict.fromkeys(("npz", "nrrd", "mha", "nifti"), WHOLE)
 CHECKS = [check.name for check in reader_checks(CASES["classic"])]
 
 

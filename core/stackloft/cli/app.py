@@ -61,6 +61,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     points: a.Points = None,
     ends: a.Ends = None,
     height: a.Height = None,
+    object: a.Object = None,  # noqa: A002 - the flag's own name
     settings: a.Settings = None,
     recipe: a.RecipeFile = None,
     reader: a.Reader = None,
@@ -81,6 +82,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "points": points,
         "ends": ends,
         "height": height,
+        "object": object,
     }
     writers, own = split_settings(parse_settings(settings or ()))
     request = request_of(source, reader=reader, method=method, flags=flags, settings=own, recipe=recipe)

@@ -58,6 +58,10 @@ Height = Annotated[
     str | None,
     typer.Option("--height", metavar="LEN", help="The body's whole length along the axis."),
 ]
+Object = Annotated[
+    str | None,
+    typer.Option("--object", metavar="largest|all|N", help="Which body of a scan, by size or label."),
+]
 PixelSize = Annotated[
     str | None,
     typer.Option("--pixel-size", metavar="LEN", help="Side of one pixel, as in 0.21mm."),

@@ -13,10 +13,10 @@ from stackloft.cli.result_table import quiet_lines, show_result
 from stackloft.cli.screen import console
 from stackloft.contracts.stack_file import load_stack_file
 from stackloft.model.errors import UsageError
+from stackloft.pipeline.every_object import measure_objects
 from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.recipe_file import load_recipe
 from stackloft.pipeline.request import MeasureRequest
-from stackloft.pipeline.run import measure
 from stackloft.report.chosen_writer import ChosenWriter, solid_writers
 from stackloft.report.run_folder import RunFolder
 from stackloft.report.thumbnails import ThumbnailSink
@@ -81,7 +81,7 @@ def run(request: MeasureRequest, output: Output) -> None:
     """
     folder = _folder(output, request.source)
     with progress_display(quiet=output.quiet) as progress:
-        outcome = measure(request, progress=progress, sinks=[ThumbnailSink()] if folder else [])
+        outcome = measure_objects(request, progress=progress, sinks=[ThumbnailSink()] if folder else [])
         files: list[Path] = []
         if folder is not None:
             progress.begin("write", None)

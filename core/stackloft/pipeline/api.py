@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from stackloft.model.measurement import Result
+from stackloft.pipeline.every_object import measure_objects as run
 from stackloft.pipeline.layers import Place, check_addresses, options_at
 from stackloft.pipeline.request import DEFAULT_METHOD, MeasureRequest
-from stackloft.pipeline.run import measure as run
 from stackloft.pipeline.workbench import guarded
 from stackloft.registry import choose_reader, instantiate
 
@@ -75,7 +75,7 @@ def measure(
         Options by ``family``, ``name`` or ``family.name``.
     **options
         General options for every plug-in of the chain that has them, for example ``points=33``,
-        ``height="78mm"``, ``ends="face,round"``, ``pixel_size="0.3mm"``.
+        ``height="78mm"``, ``ends="face,round"``, ``pixel_size="0.3mm"``, ``object="all"``.
 
     Returns
     -------

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import threading
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -21,6 +23,7 @@ from stackloft_plugins.readers.label_map import CHOICES, as_labels
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
 
 _CONFIDENCE = 0.9
+_BLOCK = 1 << 20
 _SUFFIXES = {"NRRD": "NrrdImageIO", "MetaImage": "MetaImageIO", "NIfTI": "NiftiImageIO"}
 
 
@@ -107,9 +110,23 @@ class _Volume:
             return read_only(self._extracted(number))
         with self._lock:
             if self._whole is None:
+                self._check_packing()
                 self._whole = self._array(self._informed())
                 self._whole = self._whole.reshape(self._whole.shape[-3:])
         return read_only(self._whole[number])
+
+    def _check_packing(self) -> None:
+        """Refuse a gzip file that is cut off: ITK's NIfTI reader would fill in what is missing."""
+        with self._path.open("rb") as stream:
+            packed = stream.read(2) == b"\x1f\x8b"
+        if not packed:
+            return
+        try:
+            with gzip.open(self._path) as stream:
+                while stream.read(_BLOCK):
+                    pass
+        except (OSError, EOFError, zlib.error) as error:
+            raise self._damaged("its voxels") from error
 
     def _extracted(self, number: int) -> Picture:
         reader = self._informed()

@@ -77,7 +77,7 @@ class HistogramSegmenter:
         Raises
         ------
         UsageError
-            Method ``manual`` without a threshold.
+            Method ``manual`` without a threshold, or no such body.
         """
         if self.method == "manual" and self.threshold is None:
             raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
@@ -85,6 +85,10 @@ class HistogramSegmenter:
             fill = self.voids == "fill"
             rules = SlabRules(self.method, self.threshold, self.window, self.channel, fill)
             return one_object(slab_segmentation(stack, rules), self.object)
+        if self.object != LARGEST:
+            raise UsageError(
+                "photographs show one body", where="--object", found=self.object, expected=LARGEST
+            )
         threshold = self.threshold
         if self.scope == "stack" and threshold is None:
             threshold = self._median_threshold(stack)
