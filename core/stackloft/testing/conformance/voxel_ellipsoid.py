@@ -13,6 +13,8 @@ from stackloft.model.slice_stack import SectionKind, SliceStack
 MARGIN = 9
 """Pixels around the body, enough for a crop to begin elsewhere."""
 BACKGROUND, BODY = 30.0, 180.0
+_SHIFT = (0.37, -0.21, 0.11)
+"""Voxels from the grid's middle back to the body's."""
 _FINE = (np.arange(5) - 2) / 5
 """Places inside a voxel at which it is asked whether the body fills it."""
 
@@ -28,7 +30,7 @@ def scan(axes: tuple[float, float, float], centre: FloatArray, fineness: int) ->
     volume = _coverage(axes, tuple(spacing), tuple(half))
     m, rows, columns = volume.shape
     affine = np.eye(4)
-    affine[:3, 3] = centre - spacing * half
+    affine[:3, 3] = centre + spacing * (np.array(_SHIFT) - half)
     stack = SliceStack(
         lambda k: volume[k].copy(),
         tuple(f"slice {k + 1}" for k in range(m)),
@@ -50,10 +52,9 @@ def _coverage(
     axes: tuple[float, float, float], spacing: tuple[float, ...], half: tuple[int, ...]
 ) -> FloatArray:
     """Return the slabs' grey levels, (slices, rows, columns)."""
-    shift = (0.37, -0.21, 0.11)
     x, y, z = (
         ((np.arange(-n, n + 1)[:, None] + o + _FINE) * s / a).ravel() ** 2
-        for n, o, s, a in zip(half, shift, spacing, axes, strict=True)
+        for n, o, s, a in zip(half, _SHIFT, spacing, axes, strict=True)
     )
     covered = np.zeros((2 * half[2] + 1, 2 * half[1] + 1, 2 * half[0] + 1))
     for k, height in enumerate(z):
