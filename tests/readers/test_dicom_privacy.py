@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from stackloft_plugins.readers.dicom import DicomReader
@@ -56,4 +57,7 @@ def test_info_tells_geometry_and_no_person(told):
     facts = json.loads(run.stdout)
     assert facts["reader"] == "dicom"
     assert facts["slices"] == 8
+    assert np.allclose(np.array(facts["affine"])[:3, 0], [0, 1, 0])
+    assert facts["thickness"] == [2.5, 2.5]
+    assert np.allclose(facts["pitch"], 2.5)
     assert facts["provenance"]["positions"].startswith("Image Position")

@@ -71,6 +71,7 @@ def _slices(stack: SliceStack) -> dict[str, Any]:
         "pitch": _range(np.diff(stack.positions)),
         "thickness": None if stack.thickness is None else _range(stack.thickness),
         "pixels": [rows, columns],
+        "affine": stack.affine.tolist(),
         "pixel_size": {"row": _range(stack.pixel_spacing[:, 0]), "column": _range(stack.pixel_spacing[:, 1])},
         "provenance": dict(stack.provenance),
         "hints": _hints(stack.hints),
