@@ -13,7 +13,8 @@ from stackloft.model.arrays import frozen_floats
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
 
@@ -82,9 +83,16 @@ class ContourSink:
             affine=stack.affine,
             scale_uncertainty=stack.scale_uncertainty,
             hints=stack.hints,
-            notices=(*stack.notices, *segmentation.notices, *gathered(self._notices)),
+            notices=(*stack.notices, *segmentation.notices, *gathered(self._notices), *self._mistakes()),
             provenance=stack.provenance,
         )
+
+    def _mistakes(self) -> tuple[Notice, ...]:
+        """Return what the sections of photographs say of mistakes; a scanner takes its slices in order."""
+        stack = self._begun.stack
+        if stack.kind is SectionKind.SLAB:
+            return ()
+        return stack_hazards(self._sections, float(stack.pixel_spacing.max()))
 
     @property
     def _begun(self) -> Segmentation:
