@@ -96,15 +96,17 @@ def test_labels_are_seen_or_said(tmp_path):
 
 
 def test_ome_and_imagej_spacings(tmp_path):
-    ome, imagej, bare = (tmp_path / name for name in ("a.ome.tif", "b.tif", "c.tif"))
+    open_microscopy, imagej, bare = (tmp_path / name for name in ("a.ome.tif", "b.tif", "c.tif"))
     size = {"PhysicalSizeX": 57.5, "PhysicalSizeY": 0.0575, "PhysicalSizeZ": 115.0}
     units = {"PhysicalSizeXUnit": "µm", "PhysicalSizeYUnit": "mm", "PhysicalSizeZUnit": "µm"}
-    tifffile.imwrite(ome, VALUES, photometric="minisblack", metadata={"axes": "ZYX", **size, **units})
+    tifffile.imwrite(
+        open_microscopy, VALUES, photometric="minisblack", metadata={"axes": "ZYX", **size, **units}
+    )
     tifffile.imwrite(
         imagej, VALUES.astype(np.uint16), imagej=True, resolution=(1 / 57.5, 1 / 57.5),
         metadata={"unit": "um", "spacing": 115.0, "axes": "ZYX"},
     )  # fmt: skip
-    for path in (ome, imagej):
+    for path in (open_microscopy, imagej):
         stack = TiffReader().read(path)
         assert np.allclose(stack.pixel_spacing, 0.0575)
         assert np.allclose(np.diff(stack.positions), 0.115)

@@ -131,7 +131,7 @@ def _image(volume: ScanVolume, sop_class: str, instance: int) -> Dataset:
 
 
 def _stored(values: np.ndarray) -> np.ndarray:
-    return (values.astype(np.int32) - _INTERCEPT).astype("<u2")
+    return np.clip(values.astype(np.int32) - _INTERCEPT, 0, 65535).astype("<u2")
 
 
 def _decimals(values: FloatArray) -> list[str]:
