@@ -96,7 +96,7 @@ def test_labels_are_seen_or_said(tmp_path):
 
 
 def test_ome_and_imagej_spacings(tmp_path):
-    open_microscopy, imagej, bare = (tmp_path / name for name in ("open.tif", "b.tif", "c.tif"))
+    open_microscopy, imagej, bare = (tmp_path / name for name in ("a.ome.tif", "b.tif", "c.tif"))
     size = {"PhysicalSizeX": 57.5, "PhysicalSizeY": 0.0575, "PhysicalSizeZ": 115.0}
     units = {"PhysicalSizeXUnit": "µm", "PhysicalSizeYUnit": "mm", "PhysicalSizeZUnit": "µm"}
     tifffile.imwrite(
