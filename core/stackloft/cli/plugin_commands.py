@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -48,3 +49,43 @@ def plugins_doctor(names: Names = None, json: a.Json = False) -> None:
 
     if not run(names or (), as_json=json):
         raise typer.Exit(1)
+
+
+Subject = Annotated[
+    str, typer.Argument(metavar="NAME|MODULE:CLASS", help="A plug-in, installed or not.", show_default=False)
+]
+
+
+@plugin_commands.command("check")
+@guarded
+def plugins_check(name: Subject, json: a.Json = False) -> None:
+    """Run the conformance kit of a plug-in's family on it; exit status 1 when a check fails."""
+    from stackloft.cli.plugin_check import run
+
+    if not run(name, as_json=json):
+        raise typer.Exit(1)
+
+
+FamilyName = Annotated[
+    str,
+    typer.Argument(
+        metavar="FAMILY",
+        help="reader, segmenter, reconstructor, integrator, writer or recipe.",
+        show_default=False,
+    ),
+]
+NewName = Annotated[
+    str, typer.Argument(metavar="NAME", help="Lower case with hyphens, as in acme-xct.", show_default=False)
+]
+NewFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Folder to make.  [default: NAME, here]")
+]
+
+
+@plugin_commands.command("new")
+@guarded
+def plugins_new(family: FamilyName, name: NewName, out: NewFolder = None) -> None:
+    """Begin a plug-in: a package with a working plug-in, its entry point, tests and README."""
+    from stackloft.cli.plugin_new import run
+
+    run(family, name, out)
