@@ -10,6 +10,7 @@
     reference_stays = false        # true: that far above the first face, and it stays there
     scale_uncertainty = "0.2%"     # standard uncertainty of the pixel size
     thickness = 5.6                # or positions = "0,5.6,11.1mm", one for each picture
+    kerf = "0.4mm"                 # what the blade takes away between two slices
     ends = "face,round:2.5mm"      # as --ends
     height = "78mm"
     background = "light"           # light | dark; found from the picture when left out
@@ -108,6 +109,7 @@ class StackFile(BaseModel):
     reference_stays: bool = False
     camera: CameraSaid = CameraSaid()
     thickness: _Length | None = None
+    kerf: Annotated[float, BeforeValidator(length_of), Field(ge=0, allow_inf_nan=False)] | None = None
     positions: _Lengths | None = None
     ends: Annotated[tuple[End, End], BeforeValidator(ends_of)] | None = None
     height: _Length | None = None

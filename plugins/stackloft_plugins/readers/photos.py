@@ -32,7 +32,13 @@ from stackloft_plugins.readers.picture_scale import Bench
 from stackloft_plugins.readers.reference_find import Found, hide
 from stackloft_plugins.readers.scale_choice import ScaledSlices, profiles, require_scale, scale_of
 from stackloft_plugins.readers.scale_said import ScaleFlags, scale_said
-from stackloft_plugins.readers.section_spacing import SpacingOptions, first_position, positions_of
+from stackloft_plugins.readers.section_spacing import (
+    SpacingOptions,
+    first_position,
+    height_notice,
+    positions_of,
+)
+from stackloft_plugins.readers.skipped_slices import without_skipped
 
 MIN_SLICES = 2
 """Fewer sections bound no body."""
@@ -88,6 +94,12 @@ class PhotosReader:
     scale_uncertainty: float | None = option(
         None, "standard uncertainty of the pixel size", unit="%", ge=0, lt=100
     )
+    kerf: float | str | None = option(
+        None,
+        "what the blade takes away between two slices: faces lie at k·(thickness + kerf)",
+        unit="mm",
+        ge=0,
+    )
     first: str = option("", "file name of the first slice to use; the folder's first when empty")
     last: str = option("", "file name of the last slice to use; the folder's last when empty")
 
@@ -122,7 +134,7 @@ class PhotosReader:
         scale_told = scale_said(self._scale, said)
         require_scale(scale_told, path)
         positions, position_source = positions_of(self._spacing, said, numbers, len(every), path)
-        kept, notices = _without_skipped(numbers, said, every)
+        kept, notices = without_skipped(numbers, said, every)
         headers = tuple(read_header(every[number]) for number in kept)
         _check_count(headers, path)
         check_sizes(headers)
@@ -142,13 +154,19 @@ class PhotosReader:
             origins=scale.origins,
             scale_uncertainty=scale.uncertainty,
             hints=said.hints(folder, {number + 1: slot for slot, number in enumerate(kept, start=1)}),
-            notices=(*notices, *scale.notices),
+            notices=(*notices, *self._height_checked(said, numbers, len(every), folder), *scale.notices),
             provenance={"pixel size": scale.source, "positions": position_source, **profiles(headers)},
         )
 
+    def _height_checked(
+        self, said: StackFile, numbers: tuple[int, ...], total: int, folder: Path
+    ) -> tuple[Notice, ...]:
+        """Return a notice when the height is not the slices' sum; a part of a stack is not checked."""
+        return height_notice(self._spacing, said, total, folder) if len(numbers) == total else ()
+
     @property
     def _spacing(self) -> SpacingOptions:
-        return SpacingOptions(thickness=self.thickness, positions=self.positions)
+        return SpacingOptions(thickness=self.thickness, positions=self.positions, kerf=self.kerf)
 
     @property
     def _scale(self) -> ScaleFlags:
@@ -200,27 +218,6 @@ def _check_kind(said: StackFile, folder: Path) -> None:
             found='kind = "slab"',
             expected='kind = "face" or "silhouette"',
         )
-
-
-def _without_skipped(
-    numbers: tuple[int, ...], said: StackFile, every: tuple[Path, ...]
-) -> tuple[tuple[int, ...], tuple[Notice, ...]]:
-    """Return the slices that are used, and a notice that names the skipped ones."""
-    beyond = [number for number in said.slice if number > len(every)]
-    if beyond:
-        raise InputError(
-            f"there is no slice {beyond[0]}",
-            where=str(every[0].parent / NAME),
-            found=f"[slice.{beyond[0]}]",
-            expected=f"1 to {len(every)}, counted in natural order",
-        )
-    skipped = [number for number in numbers if number + 1 in said.slice and said.slice[number + 1].skip]
-    kept = tuple(number for number in numbers if number not in skipped)
-    if not skipped:
-        return kept, ()
-    names = ", ".join(every[number].name for number in skipped)
-    message = f"skipped as {NAME} says: {names}; the body is interpolated across the gap"
-    return kept, (Notice("slice-skipped", message),)
 
 
 def _check_count(headers: tuple[PictureHeader, ...], path: Path) -> None:

@@ -12,6 +12,10 @@ from stackloft.contracts.stack_file import NAME, StackFile
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError, UsageError
 from stackloft.model.lengths import parse_length, parse_lengths
+from stackloft.model.notices import Notice
+
+_SURE = 1.01
+"""Slices: how far the sum of the thicknesses may be from the height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +25,7 @@ class SpacingOptions:
     pixel_size: float | str | None = None
     thickness: float | str | None = None
     positions: tuple[float, ...] | str | None = None
+    kerf: float | str | None = None
 
 
 def pixel_size_of(flags: SpacingOptions, said: StackFile, where: Path) -> tuple[float, str]:
@@ -82,7 +87,8 @@ def positions_of(
     if given is not None:
         return _fitted(given, numbers, total, source), source
     if thickness is not None:
-        return (np.array(numbers) - numbers[0]) * thickness, source
+        pitch = thickness + kerf_of(flags, said)
+        return (np.array(numbers) - numbers[0]) * pitch, source
     raise InputError(
         "distance between the slices is unknown",
         where=str(where),
@@ -104,7 +110,51 @@ def first_position(flags: SpacingOptions, said: StackFile, numbers: tuple[int, .
     given, thickness, _ = _chosen(flags, said, where)
     if given is not None:
         return given[0]
-    return -numbers[0] * (thickness or 0.0)
+    return -numbers[0] * ((thickness or 0.0) + kerf_of(flags, said))
+
+
+def kerf_of(flags: SpacingOptions, said: StackFile) -> float:
+    """Return what the blade takes away between two slices, mm; 0 when nobody says so.
+
+    Examples
+    --------
+    >>> positions_of(SpacingOptions(thickness=5, kerf="0.4mm"), StackFile(), (0, 1, 2), 3, Path("apple"))[0]
+    array([ 0. ,  5.4, 10.8])
+    """
+    if flags.kerf is None:
+        return said.kerf or 0.0
+    kerf = parse_length(flags.kerf, "--set reader.kerf")
+    if kerf < 0:
+        raise UsageError("must not be negative", where="--set reader.kerf", found=str(flags.kerf))
+    return kerf
+
+
+def height_notice(flags: SpacingOptions, said: StackFile, total: int, where: Path) -> tuple[Notice, ...]:
+    """Return a notice when a stated height and the sum of the slices' thicknesses disagree.
+
+    The first picture may show the body's own end or a face one slice into it, and so may the last: the sum
+    is sure to one slice. A height below the faces' span is refused where the ends are planned.
+
+    Examples
+    --------
+    >>> said = StackFile(thickness=5.0, height=90.0)
+    >>> height_notice(SpacingOptions(), said, 15, Path("apple"))[0].code
+    'height-mismatch'
+    """
+    _, thickness, _ = _chosen(flags, said, where)
+    if thickness is None or said.height is None:
+        return ()
+    kerf = kerf_of(flags, said)
+    summed = total * thickness + (total - 1) * kerf
+    if abs(said.height - summed) <= (thickness + kerf) * _SURE:
+        return ()
+    message = (
+        f"{where.name}: {total} slices of {thickness:g} mm"
+        + (f" and cuts of {kerf:g} mm" if kerf else "")
+        + f" make {summed:g} mm, but the height is said to be {said.height:g} mm: "
+        f"{abs(said.height - summed) / (thickness + kerf):.1f} slices of difference"
+    )
+    return (Notice("height-mismatch", message),)
 
 
 def _chosen(
