@@ -5,7 +5,7 @@ import pytest
 
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
-from stackloft.sectioning.corner_columns import follow_corners, share_points
+from stackloft.sectioning.corner_columns import follow_corners, place_at, share_points
 from stackloft.sectioning.equal_points import equal_points
 from stackloft.sectioning.smoothing import smooth_loop
 
@@ -82,13 +82,24 @@ def test_what_cannot_be_lofted_is_refused_by_name(loops, message):
 
 def test_chains_are_followed_through_drift_and_do_not_cross():
     corners = [np.array([0.1 + 0.02 * k, 0.6 + 0.03 * k]) % 1.0 for k in range(10)]
-    chains = follow_corners(corners, most=10)
+    chains = follow_corners(corners, 20)
     assert [len(chain.at) for chain in chains] == [10, 10]
+
+
+def test_short_chains_that_would_meet_elsewhere_are_dropped():
+    rng = np.random.default_rng(7)
+    for _ in range(50):
+        corners = [np.sort(rng.uniform(0, 1, rng.integers(0, 5))) for _ in range(12)]
+        chains = follow_corners(corners, 33)
+        for section in range(12):
+            places = np.array([place_at(chain, section) for chain in chains])
+            gaps = np.mod(np.roll(places, -1) - places, 1.0)
+            assert len(chains) < 2 or (gaps.min() > 0.3 / 33 and gaps.sum() == pytest.approx(1.0))
 
 
 @pytest.mark.parametrize("count", [4, 5, 9, 33, 400])
 def test_shares_add_up_and_nobody_goes_without(count):
-    chains = follow_corners([np.array([0.0, 0.02, 0.5, 0.9])] * 3, most=4)
+    chains = follow_corners([np.array([0.0, 0.02, 0.5, 0.9])] * 3, 33)
     shares = share_points(chains, count)
     assert sum(shares) == count
     assert min(shares) >= 1

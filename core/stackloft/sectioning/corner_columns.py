@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from stackloft.model.arrays import FloatArray
 
+PERSISTENT = 0.2
+"""Share of the sections on which a corner must show."""
+APART = 1.0 / 3.0
+"""Smallest distance of two corners as a fraction of the points' even spacing."""
 REACH = 0.07
 """Corners of neighbouring sections belong together when closer than this fraction of the loop."""
 
@@ -25,30 +30,31 @@ class CornerChain:
         return float(np.mean(list(self.at.values()))) % 1.0
 
 
-def follow_corners(corners: list[FloatArray], most: int) -> list[CornerChain]:
+def follow_corners(corners: list[FloatArray], count: int) -> list[CornerChain]:
     """Return the corner chains of a stack in order round the loop.
 
     Parameters
     ----------
     corners : list of (c_i,) arrays
         Corner places of each section as fractions of the loop from its seam, in [0, 1).
-    most : int
-        Largest number of chains wanted; the longest are kept.
+    count : int
+        Points per loop. At most half of them become corners, the longest chains first, and no two come
+        closer on any section than a third of the even spacing.
 
     Returns
     -------
     list of CornerChain
-        A corner that shows on one section alone (of three or more) is taken for noise. Chains that
-        would cross are cut to the longer one.
+        A corner that shows on fewer than a fifth of the sections, or on one alone, is taken for noise.
+        Chains that would cross or meet on any section are cut to the longer one.
     """
     chains: list[dict[int, float]] = []
     active: list[dict[int, float]] = []
     for section, marks in enumerate(corners):
         active = _extend(active, section, marks, chains)
-    least = min(2, len(corners))
+    least = max(min(2, len(corners)), math.ceil(PERSISTENT * len(corners)))
     long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least]
-    longest = sorted(long_enough, key=lambda chain: (-len(chain.at), chain.mean))[:most]
-    return _uncrossed(longest)
+    longest = sorted(long_enough, key=lambda chain: (-len(chain.at), chain.mean))[: count // 2]
+    return _uncrossed(longest, len(corners), APART / count)
 
 
 def _extend(
@@ -77,21 +83,23 @@ def _wrapped(difference: float) -> float:
     return float((difference + 0.5) % 1.0 - 0.5)
 
 
-def _uncrossed(chains: list[CornerChain]) -> list[CornerChain]:
-    """Return the chains, longest first to stay, that keep one cyclic order in all sections."""
+def _uncrossed(chains: list[CornerChain], sections: int, apart: float) -> list[CornerChain]:
+    """Return the chains, longest first to stay, that keep one cyclic order and distance on all sections."""
     kept: list[CornerChain] = []
     for chain in chains:
         trial = sorted([*kept, chain], key=lambda c: c.mean)
-        if all(_in_order(trial, section) for section in chain.at):
+        if all(_in_order(trial, section, apart) for section in range(sections)):
             kept = trial
     return kept
 
 
-def _in_order(chains: list[CornerChain], section: int) -> bool:
+def _in_order(chains: list[CornerChain], section: int, apart: float) -> bool:
     """Return whether the chains' places at a section increase over less than one turn."""
+    if len(chains) == 1:
+        return True
     places = [place_at(chain, section) for chain in chains]
     gaps = [(b - a) % 1.0 for a, b in zip(places, [*places[1:], places[0]], strict=True)]
-    return len(chains) == 1 or (min(gaps) > 1e-6 and abs(sum(gaps) - 1.0) < 1e-6)
+    return min(gaps) > apart and abs(sum(gaps) - 1.0) < 1e-6
 
 
 def place_at(chain: CornerChain, section: int) -> float:

@@ -68,7 +68,7 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
     _check_fit(curves, ready, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
-    chains = follow_corners(seams.corners, most=count // 2)
+    chains = follow_corners(seams.corners, count)
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
