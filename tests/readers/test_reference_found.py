@@ -11,7 +11,8 @@ from stackloft.testing import phantoms
 from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
 from stackloft.testing.phantoms.reference_object import ReferenceObject
-from stackloft_plugins.readers.reference_find import Found, Missing, find_reference, hide
+from stackloft_plugins.readers.reference_find import find_reference, hide
+from stackloft_plugins.readers.reference_sighting import Found, Missing
 
 NAMES = ("apple", "meat", "potato", "banana", "ellipsoid", "cylinder", "box")
 SIZES = {"disc": 24.25, "square": 20.0, "ruler": 50.0}

@@ -29,7 +29,7 @@ from stackloft_plugins.readers.picture_decode import PictureHeader, decode_pictu
 from stackloft_plugins.readers.picture_folder import check_sizes, list_pictures, split_source
 from stackloft_plugins.readers.picture_kinds import READABLE, SUFFIXES, natural_key, picture_kind
 from stackloft_plugins.readers.picture_scale import Bench
-from stackloft_plugins.readers.reference_find import Found, hide
+from stackloft_plugins.readers.reference_sighting import Found
 from stackloft_plugins.readers.scale_choice import ScaledSlices, profiles, require_scale, scale_of
 from stackloft_plugins.readers.scale_said import ScaleFlags, scale_said
 from stackloft_plugins.readers.section_spacing import (
@@ -233,6 +233,9 @@ def _check_count(headers: tuple[PictureHeader, ...], path: Path) -> None:
 def _decoder(
     headers: tuple[PictureHeader, ...], found: tuple[Found | None, ...], paper: int
 ) -> Callable[[int], Picture]:
+    if any(found):
+        from stackloft_plugins.readers.reference_find import hide  # noqa: PLC0415 - needs OpenCV
+
     def decode(number: int) -> Picture:
         picture = decode_picture(headers[number], paper)
         reference = found[number]

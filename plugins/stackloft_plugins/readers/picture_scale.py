@@ -24,8 +24,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.scale import ScaleUncertainty
 from stackloft_plugins.readers.picture_decode import PictureHeader
-from stackloft_plugins.readers.reference_find import Found
-from stackloft_plugins.readers.reference_size import EDGE_PLACE
+from stackloft_plugins.readers.reference_sighting import EDGE_PLACE, Found
 from stackloft_plugins.readers.scale_said import ScaleSaid
 
 _INCH = 25.4

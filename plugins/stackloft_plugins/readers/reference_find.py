@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -17,35 +16,14 @@ from stackloft_plugins.readers.reference_shapes import (
     reference_among,
     shapes_at,
 )
-from stackloft_plugins.readers.reference_size import PixelSize, bar_size, disc_size
+from stackloft_plugins.readers.reference_sighting import Found, Missing, PixelSize
+from stackloft_plugins.readers.reference_size import bar_size, disc_size
 
 _SMALL = 900  # pixels on the longer side of the copy in which objects are looked for
 _MARGIN = 0.10  # of its size, hidden around it: its shadow
 _MISSHAPEN = 0.012  # of its size
 _OBLIQUE = 0.06
 _SAME_PLACE = 0.06  # of the picture's sides
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Found:
-    """A reference object in one picture."""
-
-    size: PixelSize
-    centre: tuple[float, float]
-    """(column, row), pixels"""
-    corner: tuple[int, int]
-    """(row, column) of the hidden window's first pixel."""
-    hidden: NDArray[np.bool_]
-    """True where the object and its shadow are, within the window."""
-
-
-@dataclass(frozen=True, slots=True)
-class Missing:
-    """Why no reference object was found."""
-
-    reason: str
-    cut_off: bool = False
-    """True when what may be it touches the picture's border."""
 
 
 def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missing:

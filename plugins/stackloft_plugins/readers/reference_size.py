@@ -10,8 +10,6 @@ r"""A reference object's size in pixels, between the pixels.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +17,7 @@ from numpy.typing import NDArray
 from stackloft.geometry.circle_fit import fit_circle
 from stackloft.model.arrays import FloatArray
 from stackloft.model.reference import ReferenceKind
-
-EDGE_PLACE = 0.04
-"""Pixels; standard uncertainty of where the half-way level lies, common to the edge all around."""
+from stackloft_plugins.readers.reference_sighting import PixelSize
 
 _REACH = 5.0
 _STEP = 0.125
@@ -29,20 +25,6 @@ _BAND = (1.5, 4.0)
 _ROUNDS = 3
 _KEPT_OFF = 0.12  # of a side, at its corners
 _FEWEST = 8
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PixelSize:
-    """An object's size in pixels."""
-
-    size: float
-    """Diameter, side or length."""
-    uncertainty: float
-    """Standard uncertainty of the size, pixels, from how the points scatter."""
-    misfit: float
-    """Standard deviation of the points from the circle or the lines, relative to the size."""
-    oblique: float
-    """How unlike its two diameters, or its two sides, are, relative; 0 for a ruler."""
 
 
 def disc_size(grey: NDArray[np.float32], centre: tuple[float, float], radius: float) -> PixelSize | None:

@@ -13,7 +13,7 @@ from stackloft.model.notices import Notice
 from stackloft.model.reference import Reference
 from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture
 from stackloft_plugins.readers.picture_scale import Bench
-from stackloft_plugins.readers.reference_find import Found, Missing, find_reference
+from stackloft_plugins.readers.reference_sighting import Found, Missing
 
 THREADS = 2
 _UNLIKE = 0.02
@@ -42,6 +42,7 @@ def find_in_stack(
     InputError
         No picture shows it, or one cannot be decoded.
     """
+    from stackloft_plugins.readers.reference_find import find_reference  # noqa: PLC0415 - needs OpenCV
 
     def look(header: PictureHeader) -> Found | Missing:
         return find_reference(decode_picture(header, paper), reference.kind)

@@ -14,7 +14,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft_plugins.readers.picture_decode import PictureHeader
 from stackloft_plugins.readers.picture_scale import Bench, PictureScale, measured_scale, told_scale
-from stackloft_plugins.readers.reference_find import Found
+from stackloft_plugins.readers.reference_sighting import Found
 from stackloft_plugins.readers.reference_stack import Sightings, find_in_stack
 from stackloft_plugins.readers.scale_notices import plane_notice, reference_notices
 from stackloft_plugins.readers.scale_said import ScaleSaid

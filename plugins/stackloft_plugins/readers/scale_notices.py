@@ -12,7 +12,7 @@ from stackloft.model.arrays import FloatArray
 from stackloft.model.notices import Notice
 from stackloft_plugins.readers.picture_decode import PictureHeader
 from stackloft_plugins.readers.picture_scale import Bench
-from stackloft_plugins.readers.reference_find import Found
+from stackloft_plugins.readers.reference_sighting import Found
 
 USUAL = (600.0, 1000.0)
 """mm: distances at which hand-held and stand cameras photograph food."""

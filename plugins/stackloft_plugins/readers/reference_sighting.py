@@ -1,0 +1,47 @@
+"""What is known of a reference object in a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+EDGE_PLACE = 0.04
+"""Pixels; standard uncertainty of where the half-way level lies, common to the edge all around."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PixelSize:
+    """An object's size in pixels."""
+
+    size: float
+    """Diameter, side or length."""
+    uncertainty: float
+    """Standard uncertainty of the size, pixels, from how the points scatter."""
+    misfit: float
+    """Standard deviation of the points from the circle or the lines, relative to the size."""
+    oblique: float
+    """How unlike its two diameters, or its two sides, are, relative; 0 for a ruler."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """A reference object in one picture."""
+
+    size: PixelSize
+    centre: tuple[float, float]
+    """(column, row), pixels"""
+    corner: tuple[int, int]
+    """(row, column) of the hidden window's first pixel."""
+    hidden: NDArray[np.bool_]
+    """True where the object and its shadow are, within the window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Why no reference object was found."""
+
+    reason: str
+    cut_off: bool = False
+    """True when what may be it touches the picture's border."""
