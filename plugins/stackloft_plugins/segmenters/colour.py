@@ -1,0 +1,154 @@
+r"""Body and plate told apart by colour, for flesh whose grey is near the plate's.
+
+::
+
+    L*a*b*  body .                      RGB   plate ---------*--------- body
+             \  ΔE                            half-way along this line lies the edge: a pixel that is
+              . plate                         covered by half is the mean of both colours
+
+The body is where the colour differs from the plate's (CIE 1976 L*a*b* difference, Otsu's threshold). That
+difference is not proportional to how much of a pixel the body covers, so the boundary itself is sought on
+the line from the plate's colour to that of the body's edge in RGB, half-way as in `half_way`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import cv2
+import numpy as np
+
+from stackloft.contracts.options import option
+from stackloft.model.arrays import read_only
+from stackloft.model.errors import InputError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft_plugins.segmenters.body_window import body_window, coarse_step, main_body
+from stackloft_plugins.segmenters.edge_level import edge_level
+from stackloft_plugins.segmenters.grey import Grey, median_filtered
+from stackloft_plugins.segmenters.half_way import half_way_edge, inside_band, outside_band
+from stackloft_plugins.segmenters.histogram_levels import histogram_level
+from stackloft_plugins.segmenters.slice_field import mask_field
+
+_FRAME = 0.02  # of the shorter side
+_NO_STEP = 4.0  # standard deviations of the plate's noise
+_LEAST_STEP = 6.0  # of 255
+
+
+@dataclass(frozen=True, slots=True)
+class ColourSegmenter:
+    """Segments by the colour difference from the plate, whose colour is the frame's usual one.
+
+    ``[slice.N] threshold`` in ``stack.toml`` is a colour difference here; ``mask`` works as ever.
+
+    Examples
+    --------
+    >>> from stackloft.model.slice_stack import SectionKind
+    >>> plate = np.full((60, 80, 3), 128, dtype=np.uint8)
+    >>> plate[20:40, 20:60] = (190, 105, 100)               # as grey as the plate
+    >>> stack = SliceStack(lambda k: plate, ("a", "b"), (60, 80), np.array([0.0, 5.0]),
+    ...                    np.full((2, 2), 0.3), SectionKind.FACE)
+    >>> field = ColourSegmenter().segment(stack).field_of(0, plate)
+    >>> int((field.values > field.level).sum())             # 800, less the corners that the median rounds
+    796
+    """
+
+    api: ClassVar[str] = "1"
+    accepts: ClassVar[tuple[type, ...]] = (SliceStack,)
+    produces: ClassVar[tuple[type, ...]] = (Segmentation,)
+    general: ClassVar[bool] = False
+
+    threshold: float | None = option(
+        None, "colour difference (L*a*b*) that is body; given, none is sought", gt=0, source="CIE 1976"
+    )
+
+    def segment(self, stack: SliceStack) -> Segmentation:
+        """Return the segmentation; no slice is decoded here."""
+
+        def field_of(number: int, picture: Picture) -> SectionField:
+            said: Mapping[str, Any] = stack.hints.slices.get(number + 1, {})
+            name = stack.names[number]
+            if "mask" in said:
+                return mask_field(said["mask"], stack.shape, name)
+            return colour_field(picture, said.get("threshold", self.threshold), name)
+
+        return Segmentation(stack, field_of)
+
+
+def colour_field(picture: Picture, threshold: float | None, name: str) -> SectionField:
+    """Return the field of one slice, cropped to the body and a margin.
+
+    Raises
+    ------
+    InputError
+        The picture is grey, or shows no body of another colour than the plate.
+    """
+    if picture.ndim != 3:
+        raise InputError(
+            "has no colours to tell the body by", where=name, found="grey", fix="use the histogram segmenter"
+        )
+    full = float(np.iinfo(picture.dtype).max) if picture.dtype.kind in "iu" else float(picture.max())
+    shape: tuple[int, int] = picture.shape[:2]
+    step = coarse_step(shape)
+    coarse = _scaled(picture[::step, ::step], full)
+    plate = _plate(coarse)
+    apart = median_filtered(_difference(coarse, plate))
+    level = histogram_level(apart, "otsu", name) if threshold is None else threshold
+    window = body_window((apart > level).astype(np.uint8), step, shape)
+    if window is None:
+        raise _no_body(name, f"no colour differs from the plate's by {level:.3g}")
+    colours = _scaled(picture[window], full)
+    grey = _along(colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8)))
+    edge = None if grey is None else half_way_edge(grey, 0.5 * float(grey.max()))
+    if grey is None or edge is None or edge.contrast < max(_NO_STEP * edge.noise, _LEAST_STEP):
+        raise _no_body(name, "no boundary between two colours")
+    settled = edge_level(grey, edge)
+    return SectionField(
+        values=read_only(grey.astype(np.float64)),
+        level=settled,
+        offset=(window[0].start, window[1].start),
+        threshold=settled,
+    )
+
+
+def _scaled(part: Picture, full: float) -> Grey:
+    """Return RGB from 0 to 1."""
+    return np.ascontiguousarray(part, dtype=np.float32) / np.float32(full)
+
+
+def _plate(colours: Grey) -> Grey:
+    """Return the frame's usual colour, (3)."""
+    width = max(1, round(_FRAME * min(colours.shape[:2])))
+    edges = (colours[:width], colours[-width:], colours[:, :width], colours[:, -width:])
+    return np.asarray(np.median(np.concatenate([edge.reshape(-1, 3) for edge in edges]), axis=0), np.float32)
+
+
+def _difference(colours: Grey, plate: Grey) -> Grey:
+    """Return the L*a*b* difference of every pixel from the plate."""
+    lab = cv2.cvtColor(colours, cv2.COLOR_RGB2LAB)
+    own = cv2.cvtColor(plate.reshape(1, 1, 3), cv2.COLOR_RGB2LAB)
+    return np.asarray(np.linalg.norm(lab - own, axis=2), dtype=np.float32)
+
+
+def _along(colours: Grey, mask: np.ndarray[Any, np.dtype[np.uint8]]) -> Grey | None:
+    """Return how far each pixel lies on the way from the plate beside the edge to the body within, 0–255."""
+    inner, outer = inside_band(mask), outside_band(mask)
+    if not inner.any() or not outer.any():
+        return None
+    beside = np.median(colours[outer], axis=0)
+    way = np.median(colours[inner], axis=0) - beside
+    length = float(np.linalg.norm(way))
+    if length == 0.0:
+        return None
+    return median_filtered(np.asarray(255.0 * ((colours - beside) @ (way / length)), dtype=np.float32))
+
+
+def _no_body(name: str, found: str) -> InputError:
+    return InputError(
+        "no body of another colour found",
+        where=name,
+        found=found,
+        fix="give --set segmenter.threshold=DIFFERENCE, or a mask for it in stack.toml",
+    )

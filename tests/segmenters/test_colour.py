@@ -1,0 +1,38 @@
+"""Flesh as grey as its plate is found by colour, its area right to a part of a pixel."""
+
+import numpy as np
+import pytest
+
+import stackloft
+from stackloft.model.errors import InputError
+from stackloft.model.slice_stack import SectionKind, SliceStack
+from stackloft_plugins.segmenters.colour import colour_field
+
+PLATE, FLESH = np.array([128.0, 128, 128]), np.array([190.0, 105, 100])
+
+
+def scene(radius, noise=0.0, seed=0):
+    rows, columns = np.mgrid[:200, :240]
+    covered = np.clip(0.5 - (np.hypot(rows - 99.3, columns - 118.6) - radius), 0, 1)[..., None]
+    picture = PLATE + (FLESH - PLATE) * covered
+    return (picture + np.random.default_rng(seed).normal(0, noise, picture.shape)).clip(0, 255).round()
+
+
+@pytest.mark.parametrize("noise", [0.0, 2.5])
+def test_a_body_as_grey_as_the_plate_is_measured(noise):
+    z = np.arange(9) * 2.0 - 8
+    radii = np.sqrt(70**2 - (z / 0.15) ** 2)
+    pictures = [scene(radius, noise, k).astype(np.uint8) for k, radius in enumerate(radii)]
+    names = tuple(f"cut_{k}" for k in range(9))
+    spacing = np.full((9, 2), 0.15)
+    stack = SliceStack(lambda k: pictures[k], names, (200, 240), z, spacing, SectionKind.FACE)
+    result = stackloft.measure(stack, segmenter="colour")
+    areas = np.array([section.area for section in result.objects[0].sections])
+    assert areas == pytest.approx(np.pi * (0.15 * radii) ** 2, rel=0.003)
+
+
+def test_grey_and_empty_pictures_are_refused():
+    with pytest.raises(InputError, match="histogram"):
+        colour_field(np.zeros((30, 30), np.uint8), None, "a.png")
+    with pytest.raises(InputError, match=r"a\.png: "):
+        colour_field(scene(0.0, 2.0).astype(np.uint8), 40.0, "a.png")
