@@ -45,7 +45,7 @@ def test_a_new_reader_works_in_measure_and_its_check_is_a_table(lab, tmp_path):
     table = lab.sh("stackloft plugins check acme-xct", folder)
     assert table.splitlines()[0].split() == ["check", "outcome", "reason"]
     assert "23 of 23 checks hold" in table
-    unknown = lab.sh("stackloft measure sample.vol --set acme-xct.pich=3mm", folder, status=2)
+    unknown = lab.sh("stackloft measure sample.vol --set acme-xct.pitches=3mm", folder, status=2)
     assert "did you mean pitch?" in unknown
 
 
