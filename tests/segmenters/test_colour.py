@@ -1,7 +1,13 @@
 """Flesh as grey as its plate is found by colour, its area right to a part of a pixel."""
 
+import json
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+from PIL import Image
 
 import stackloft
 from stackloft.model.errors import InputError
@@ -36,3 +42,14 @@ def test_grey_and_empty_pictures_are_refused():
         colour_field(np.zeros((30, 30), np.uint8), None, "a.png")
     with pytest.raises(InputError, match=r"a\.png: "):
         colour_field(scene(0.0, 2.0).astype(np.uint8), 40.0, "a.png")
+
+
+def test_the_command_line_takes_it_by_name(tmp_path):
+    for number in range(4):
+        Image.fromarray(scene(60.0, 1.0, number).astype(np.uint8)).save(tmp_path / f"{number}.png")
+    command = [Path(sys.executable).with_name("stackloft"), "measure", tmp_path, "--pixel-size", "0.2"]
+    flags = ["--thickness", "5", "--ends", "face", "--segmenter", "colour", "--json", "--quiet"]
+    run = subprocess.run([*command, *flags], check=False, capture_output=True, text=True, timeout=60)
+    assert run.returncode == 0, run.stderr
+    volume = json.loads(run.stdout)["objects"][0]["volume"]["value"]
+    assert volume == pytest.approx(15 * np.pi * 12**2, rel=0.003)

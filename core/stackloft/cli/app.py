@@ -65,6 +65,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     settings: a.Settings = None,
     recipe: a.RecipeFile = None,
     reader: a.Reader = None,
+    segmenter: a.Segmenter = None,
 ) -> None:
     """Measure volume and surface area.
 
@@ -85,7 +86,9 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "object": object,
     }
     writers, own = split_settings(parse_settings(settings or ()))
-    request = request_of(source, reader=reader, method=method, flags=flags, settings=own, recipe=recipe)
+    request = request_of(
+        source, reader=reader, segmenter=segmenter, method=method, flags=flags, settings=own, recipe=recipe
+    )
     run(request, Output(out, a.names_of(write), writers, json, quiet, units and units.value))
 
 

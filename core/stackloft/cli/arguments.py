@@ -41,6 +41,10 @@ Reader = Annotated[
     str | None,
     typer.Option("--reader", metavar="NAME", help="Reader to use instead of the one that knows SOURCE."),
 ]
+Segmenter = Annotated[
+    str | None,
+    typer.Option("--segmenter", metavar="NAME", help="How body and plate are told apart: histogram, colour."),
+]
 Method = Annotated[
     str | None,
     typer.Option("--method", metavar="NAME,…|all", help="Method, the first is the main one."),

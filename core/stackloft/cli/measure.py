@@ -31,6 +31,7 @@ def request_of(
     flags: Mapping[str, Any],
     settings: Mapping[str, Mapping[str, Any]],
     recipe: Path | None = None,
+    segmenter: str | None = None,
 ) -> MeasureRequest:
     """Return the request that the command line makes; what it says wins over the recipe file.
 
@@ -46,11 +47,14 @@ def request_of(
         What ``--set`` said, by plug-in.
     recipe : Path, optional
         A ``recipe.toml``.
+    segmenter : str, optional
+        By name.
     """
     base = MeasureRequest(source) if recipe is None else load_recipe(recipe, source)
     return replace(
         base,
         reader=reader or base.reader,
+        segmenter=segmenter or base.segmenter,
         method=method or base.method,
         shared={name: value for name, value in flags.items() if value is not None},
         settings=settings,
