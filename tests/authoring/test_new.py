@@ -6,6 +6,12 @@ import pytest
 
 from stackloft.cli.plugin_new import families
 
+INVENTED = {
+    "self.pitch or pitch\n": "self.pitch or pitch or 1.0\n",
+    "min(pitch, row, column) > 0": "pitch > 0",
+    "np.tile((row, column)": "np.tile((row or 1.0, column or 1.0)",
+}
+"""A spacing of 1 where the file tells none."""
 INSTALL = "pip install -q --no-build-isolation --no-deps -e ."
 
 
@@ -54,13 +60,11 @@ def test_a_fault_in_the_plugin_fails_its_check(lab, tmp_path):
     folder = tmp_path / "acme-xct"
     lab.sh(INSTALL, folder)
     source = folder / "src" / "acme_xct" / "plugin.py"
-    source.write_text(
-        source.read_text()
-        .replace("_header(path)\n", "_header(path)\n        row = row or 1.0\n", 1)
-        .replace("pitch = self.pitch or pitch", "pitch = self.pitch or pitch or 1.0")
-        .replace("column) > 0:", "1.0) > 0:")
-        .replace("np.tile((row, column)", "np.tile((row, column or 1.0)")
-    )
+    text = source.read_text()
+    for honest, faulty in INVENTED.items():
+        assert honest in text
+        text = text.replace(honest, faulty)
+    source.write_text(text)
     report = lab.sh("stackloft plugins check reader.acme-xct --json", folder, status=1)
     told = json.loads(report[report.index("{") :])
     failed = [item["check"] for item in told["checks"] if not item["passed"]]
