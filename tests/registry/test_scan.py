@@ -73,7 +73,7 @@ def test_unknown_family_and_name_say_what_there_is():
         catalogue("printer")
     with pytest.raises(PluginError, match="no reconstructor is called 'lofft'; fix: did you mean loft"):
         find("reconstructor", "lofft")
-    with pytest.raises(PluginError, match="fix: there is .*loft"):
+    with pytest.raises(PluginError, match=r"fix: there is .*loft"):
         locate("reconstructor", "zzz")
 
 
