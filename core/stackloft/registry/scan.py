@@ -56,7 +56,7 @@ def catalogue(family: str | None = None) -> tuple[Listing, ...]:
     Examples
     --------
     >>> [listing.name for listing in catalogue("segmenter") if listing.distribution == "stackloft"]
-    ['histogram']
+    ['colour', 'histogram']
     """
     if family is None:
         return scan()

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from stackloft.model.errors import UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
-from stackloft.sectioning.objects import BodyObject, find_objects
+
+if TYPE_CHECKING:
+    from stackloft.sectioning.objects import BodyObject
 
 LARGEST = "largest"
 OBJECTS = "objects"
@@ -50,6 +53,8 @@ def one_object(whole: Segmentation, wanted: str) -> Segmentation:
     >>> int((one_object(both, "2").field_of(0, picture).values > 50).sum())
     36
     """
+    from stackloft.sectioning.objects import find_objects  # noqa: PLC0415 - it needs OpenCV
+
     found = find_objects(whole)
     names = [_name(body, rank) for rank, body in enumerate(found, start=1)]
     if wanted == LARGEST:
