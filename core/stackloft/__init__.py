@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from stackloft.model.notices import Notice
     from stackloft.model.segmentation import SectionField, Segmentation
     from stackloft.model.slice_stack import Hints, SectionKind, SliceStack
+    from stackloft.model.tet_mesh import TetMesh
     from stackloft.model.tri_mesh import TriMesh
     from stackloft.pipeline.api import measure, read
     from stackloft.studies.convergence import convergence
@@ -55,6 +56,7 @@ _HOMES = {
     "model.notices": ("Notice",),
     "model.segmentation": ("SectionField", "Segmentation"),
     "model.slice_stack": ("Hints", "SectionKind", "SliceStack"),
+    "model.tet_mesh": ("TetMesh",),
     "model.tri_mesh": ("TriMesh",),
     "pipeline.api": ("measure", "read"),
     "studies.convergence": ("convergence",),
@@ -88,6 +90,7 @@ __all__ = [
     "Shell",
     "SliceStack",
     "StackloftError",
+    "TetMesh",
     "TriMesh",
     "UsageError",
     "__version__",

@@ -21,6 +21,7 @@ from stackloft.model.measurement import Integral, Measurement, MethodRow, Result
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Hints, SliceStack
+from stackloft.model.tet_mesh import TetMesh, mesh_entry
 from stackloft.pipeline.agreement import disagreements
 from stackloft.pipeline.blame import guarded
 from stackloft.pipeline.digest import PictureDigest, digest_of, digest_of_value
@@ -104,6 +105,7 @@ class _Measured:
 
     identities: tuple[str, ...]
     solid: LoftedSolid | None
+    mesh: TetMesh | None = None
     found: tuple[tuple[Method, Integral], ...] = ()
     """Every method's figures as its integrator gave them, for comparing them."""
     notices: tuple[Notice, ...] = ()
@@ -144,7 +146,9 @@ def _run_methods(
                 raise errors[0] from None
             rows[method.name] = MethodRow(None, None, 0.0, str(error))
     primary = _primary(rows) if every else methods[0].name
-    solids = [bench.made[name] for name in works[primary] if isinstance(bench.made[name], LoftedSolid)]
+    made = [bench.made[name] for name in works[primary]]
+    solid = next((item for item in made if isinstance(item, LoftedSolid)), None)
+    mesh = next((item for item in made if isinstance(item, TetMesh)), None)
     found = [(method, bench.made[works[method.name][-1]]) for method in methods if method.name in works]
     first = methods[0].name
     told = Notice(
@@ -153,7 +157,7 @@ def _run_methods(
     )
     notices = () if primary == first else (told,)
     ordered = {primary: rows[primary]} | rows
-    return ordered, _Measured(tuple(works[primary]), solids[0] if solids else None, tuple(found), notices)
+    return ordered, _Measured(tuple(works[primary]), solid, mesh, tuple(found), notices)
 
 
 def _primary(rows: dict[str, MethodRow]) -> str:
@@ -197,6 +201,7 @@ def _measurement(
         derived=derived_figures(volume.value, area.value if area else None, hints.measured_weight),
         ends=measured.solid.ends if measured.solid is not None else (),
         sections=sections,
+        mesh=mesh_entry(measured.mesh) if measured.mesh is not None else None,
     )
 
 

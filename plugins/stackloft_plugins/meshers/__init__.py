@@ -1,0 +1,1 @@
+"""Meshers: closed solids filled with tetrahedra."""
