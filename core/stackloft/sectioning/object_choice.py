@@ -18,6 +18,8 @@ OBJECTS = "objects"
 """Key of a stack's provenance: the names of all its bodies, separated by commas."""
 OBJECT = "object"
 """Key of a stack's provenance: the body that was chosen."""
+KIND = "object kind"
+"""Key of a stack's provenance: what such a body is called (``label``, ``segment``, ``region``), if anything."""
 _LISTED = 12
 
 

@@ -24,7 +24,7 @@ def seems_dicom(source: Path) -> bool:
     """Return whether one of the first files at `source` begins as DICOM; opens at most eight."""
     if source.is_file():
         return is_dicom(source)
-    return any(is_dicom(path) for path in islice(_walk(source, _FOLDERS_PROBED), _PROBED))
+    return any(is_dicom(path) for path in islice(walked(source, _FOLDERS_PROBED), _PROBED))
 
 
 def dicom_files(source: Path) -> tuple[Path, ...]:
@@ -40,7 +40,7 @@ def dicom_files(source: Path) -> tuple[Path, ...]:
         if not is_dicom(source):
             raise _no_dicom(source)
         return _listed_in(source) if source.name.upper() == DIRECTORY else (source,)
-    every = sorted(_walk(source), key=lambda path: natural_key(path.as_posix()))
+    every = sorted(walked(source), key=lambda path: natural_key(path.as_posix()))
     if not every:
         what = "an empty folder" if source.is_dir() else "nothing there"
         raise InputError("no DICOM file", where=str(source), found=what)
@@ -51,7 +51,7 @@ def dicom_files(source: Path) -> tuple[Path, ...]:
     return found
 
 
-def _walk(source: Path, most_folders: int | None = None) -> Iterator[Path]:
+def walked(source: Path, most_folders: int | None = None) -> Iterator[Path]:
     """Yield the files of a folder and of those below it, or those that a pattern matches."""
     if not source.is_dir():
         if not source.exists() and source.parent.is_dir() and set(source.name) & set("*?["):

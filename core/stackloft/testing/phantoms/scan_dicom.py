@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import UsageError
 from stackloft.testing.phantoms.files import write_whole
 from stackloft.testing.phantoms.scan_volume import ScanVolume
+from stackloft.testing.phantoms.structure_set import decimals
 
 if TYPE_CHECKING:
     from pydicom import Dataset
@@ -57,10 +57,10 @@ def write_dicom(volume: ScanVolume, folder: Path) -> list[Path]:
 def classic(volume: ScanVolume, k: int) -> Dataset:
     """Return slice `k` as a CT image."""
     data = _image(volume, _CT, len(volume.slices) - k)
-    data.ImagePositionPatient = _decimals(volume.corner(k))
-    data.ImageOrientationPatient = _decimals(volume.turn.T[:2].ravel())
-    data.PixelSpacing = _decimals(np.array(volume.grid.spacing))
-    data.SliceThickness = _decimals(np.array([volume.grid.thickness]))[0]
+    data.ImagePositionPatient = decimals(volume.corner(k))
+    data.ImageOrientationPatient = decimals(volume.turn.T[:2].ravel())
+    data.PixelSpacing = decimals(np.array(volume.grid.spacing))
+    data.SliceThickness = decimals(np.array([volume.grid.thickness]))[0]
     data.RescaleSlope, data.RescaleIntercept, data.RescaleType = "1", str(_INTERCEPT), "HU"
     data.PixelData = _stored(volume.slices[k]).tobytes()
     return data
@@ -73,9 +73,9 @@ def enhanced(volume: ScanVolume) -> Dataset:
     data = _image(volume, _ENHANCED_CT, 1)
     data.NumberOfFrames = len(volume.slices)
     shared, measures, plane, scale = Dataset(), Dataset(), Dataset(), Dataset()
-    measures.PixelSpacing = _decimals(np.array(volume.grid.spacing))
-    measures.SliceThickness = _decimals(np.array([volume.grid.thickness]))[0]
-    plane.ImageOrientationPatient = _decimals(volume.turn.T[:2].ravel())
+    measures.PixelSpacing = decimals(np.array(volume.grid.spacing))
+    measures.SliceThickness = decimals(np.array([volume.grid.thickness]))[0]
+    plane.ImageOrientationPatient = decimals(volume.turn.T[:2].ravel())
     scale.RescaleSlope, scale.RescaleIntercept, scale.RescaleType = "1", str(_INTERCEPT), "HU"
     shared.PixelMeasuresSequence = Sequence([measures])
     shared.PlaneOrientationSequence = Sequence([plane])
@@ -84,7 +84,7 @@ def enhanced(volume: ScanVolume) -> Dataset:
     frames = []
     for k in range(len(volume.slices)):
         own, place = Dataset(), Dataset()
-        place.ImagePositionPatient = _decimals(volume.corner(k))
+        place.ImagePositionPatient = decimals(volume.corner(k))
         own.PlanePositionSequence = Sequence([place])
         frames.append(own)
     data.PerFrameFunctionalGroupsSequence = Sequence(frames)
@@ -132,10 +132,3 @@ def _image(volume: ScanVolume, sop_class: str, instance: int) -> Dataset:
 
 def _stored(values: np.ndarray) -> np.ndarray:
     return np.clip(values.astype(np.int32) - _INTERCEPT, 0, 65535).astype("<u2")
-
-
-def _decimals(values: FloatArray) -> list[str]:
-    """Return the numbers as DICOM's decimal strings of at most 16 characters."""
-    from pydicom.valuerep import format_number_as_ds  # noqa: PLC0415 - slow to import
-
-    return [format_number_as_ds(float(value)) for value in values]

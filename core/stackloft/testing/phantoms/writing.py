@@ -17,10 +17,12 @@ from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
 from stackloft.testing.phantoms.scans import WRITERS, Scans
+from stackloft.testing.phantoms.structure_set import StructureSet
 
-FORMS: dict[str, type[Photographs | Contours | Scans]] = {
+FORMS: dict[str, type[Photographs | Contours | StructureSet | Scans]] = {
     "photos": Photographs,
     "contours": Contours,
+    "rtstruct": StructureSet,
     **dict.fromkeys(WRITERS, Scans),
 }
 """Form to the class whose fields are its options."""
@@ -54,7 +56,7 @@ def write_phantom(
     ----------
     name : str
         One of `stackloft.testing.phantoms.NAMES`.
-    form : {"photos", "contours", "dicom", "nrrd", "nifti", "tiff"}
+    form : {"photos", "contours", "rtstruct", "dicom", "dicom-seg", "nrrd", "nifti", "tiff", "bruker"}
     folder : Path or str
         Made if missing. Receives the sections, ``stack.toml`` and ``answer.json`` with the exact figures.
     rotation, offset
