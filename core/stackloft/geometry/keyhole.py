@@ -8,7 +8,7 @@ r"""Outlines with holes drawn as one curve ("keyhole"), cut open into their loop
       |   +-------+     |
       +-----------------+
 
-Source: DICOM PS3.3, C.8.8.6.3: a region with a hole in a closed planar contour is drawn with a narrow channel.
+Source: DICOM PS3.3, C.8.8.6.3: a hole is drawn by a narrow channel from the outline.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.progress import Progress
 from stackloft.pipeline.request import MeasureRequest
 from stackloft.pipeline.run import measure
-from stackloft.sectioning.object_choice import LARGEST, OBJECT, OBJECTS
+from stackloft.sectioning.object_choice import KIND, LARGEST, OBJECT, OBJECTS
 
 ALL = "all"
 _SINGLE = "several-objects"
@@ -55,7 +55,7 @@ def measure_objects(
     if request.shared.get("object") != ALL:
         return measure(request, progress=progress, sinks=sinks, product=product)
     first = measure(_asking(request, LARGEST), progress=progress, sinks=sinks, product=product)
-    told = first.segmentation.stack.provenance if first.segmentation is not None else {}
+    told = _told(first)
     names = [name for name in told.get(OBJECTS, "").split(",") if name]
     measured: dict[str, Measurement] = {told.get(OBJECT, ""): first.result.objects[0]}
     warnings = [notice for notice in first.result.warnings if notice.code != _SINGLE]
@@ -73,13 +73,20 @@ def measure_objects(
         ]
     if not names:
         return first
-    binary = first.segmentation is not None and first.segmentation.binary
+    kind = told.get(KIND)
     objects = tuple(
-        replace(measured[name], id=number, label=f"label {name}" if binary else None)
+        replace(measured[name], id=number, label=f"{kind} {name}" if kind else None)
         for number, name in enumerate(names, start=1)
         if name in measured
     )
     return replace(first, result=replace(first.result, objects=objects, warnings=tuple(warnings)))
+
+
+def _told(outcome: Outcome) -> Mapping[str, str]:
+    """Return what the run says of the bodies that are there."""
+    if outcome.segmentation is not None:
+        return outcome.segmentation.stack.provenance
+    return outcome.contours.provenance if outcome.contours is not None else {}
 
 
 def _asking(request: MeasureRequest, name: str) -> MeasureRequest:

@@ -19,7 +19,7 @@ OBJECTS = "objects"
 OBJECT = "object"
 """Key of a stack's provenance: the body that was chosen."""
 KIND = "object kind"
-"""Key of a stack's provenance: what such a body is called (``label``, ``segment``, ``region``), if anything."""
+"""Key of a stack's provenance: what such a body is called (label, segment, region), if anything."""
 _LISTED = 12
 
 
@@ -71,6 +71,8 @@ def one_object(whole: Segmentation, wanted: str) -> Segmentation:
         text = f"{len(found)} bodies are here ({_listing(found, names)}); measured is {names[number]}"
         notices = (*notices, Notice("several-objects", f"{text}: choose another with --object"))
     told = {**chosen.stack.provenance, OBJECT: names[number], OBJECTS: ",".join(names)}
+    if found[number].label is not None:
+        told.setdefault(KIND, "label")
     return replace(chosen, stack=replace(chosen.stack, provenance=told), notices=notices)
 
 

@@ -31,6 +31,7 @@ from stackloft_plugins.readers.dicom_files import dicom_files, seems_dicom
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_header import read_frames
 from stackloft_plugins.readers.dicom_location import check_locations
+from stackloft_plugins.readers.dicom_objects import without_objects
 from stackloft_plugins.readers.dicom_pixels import decode_frame
 from stackloft_plugins.readers.dicom_series import (
     Series,
@@ -101,10 +102,11 @@ class DicomReader:
             Damaged files; no position; missing, duplicate or mixed slices; several volumes at the same
             places; a mosaic; no decoder. Files, what was found and what was expected are named.
         """
+        pictures, drawn = without_objects(dicom_files(path))
         every = series_of(
             [
                 frame
-                for item in dicom_files(path)
+                for item in pictures
                 for frame in read_frames(item, keep_identifiers=self.keep_identifiers)
             ]
         )
@@ -118,7 +120,7 @@ class DicomReader:
         for syntax, frame in {frame.syntax: frame for frame in ordered}.items():
             check_decoder(syntax, frame.path)
         slabs = None if thickness is None else frozen_floats(thickness[placed.order])
-        notices = (*several, *left_out, *one, *placed.notices, *slab_notices(placed.positions, slabs))
+        notices = (*drawn, *several, *left_out, *one, *placed.notices, *slab_notices(placed.positions, slabs))
         return self._stack(ordered, placed, slabs, notices, label(every, chosen), path)
 
     def _stack(

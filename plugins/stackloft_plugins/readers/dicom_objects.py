@@ -8,12 +8,15 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
 from stackloft_plugins.readers.dicom_files import walked
 from stackloft_plugins.readers.dicom_sniff import begins_as_dicom
 
 RTSTRUCT, SEGMENTATION = "RTSTRUCT", "SEG"
 _HEAD = 2048
 _PROBED = 40
+_NAMED = 5
 _CLASS = rb"1\.2\.840\.10008\.5\.1\.4\.1\.1\."
 _KINDS = {
     RTSTRUCT: re.compile(_CLASS + rb"481\.3(?![0-9.])"),
@@ -45,7 +48,7 @@ def object_kind(path: Path) -> str:
 
 
 def objects_at(source: Path, kind: str) -> tuple[Path, ...]:
-    """Return the files of that kind: `source` itself, or those in the folder and below it, in natural order."""
+    """Return the files of that kind: `source`, or those in the folder and below it, in natural order."""
     files = (source,) if source.is_file() else tuple(walked(source))
     return tuple(path for path in files if object_kind(path) == kind)
 
@@ -64,6 +67,31 @@ def object_confidence(source: Path, kind: str) -> float:
     except (OSError, ValueError):
         return 0.0
     return CONFIDENCE if kinds == {kind} else 0.0
+
+
+def without_objects(files: tuple[Path, ...]) -> tuple[tuple[Path, ...], tuple[Notice, ...]]:
+    """Return the files that may be pictures, and a notice of those that are not.
+
+    Raises
+    ------
+    InputError
+        None may be a picture.
+    """
+    kinds = {path: object_kind(path) for path in files}
+    pictures = tuple(path for path in files if not kinds[path])
+    others = [path for path in files if kinds[path]]
+    if not others:
+        return pictures, ()
+    named = ", ".join(f"{path.name} ({kinds[path]})" for path in others[:_NAMED])
+    if not pictures:
+        raise InputError(
+            "holds no pictures",
+            where=str(others[0].parent),
+            found=named,
+            fix="leave out --reader dicom: structure sets and segmentations have readers of their own",
+        )
+    text = f"{len(others)} files are no pictures and are left out: {named}; measure them by naming the file"
+    return pictures, (Notice("left-out", text),)
 
 
 def _is_dicom(path: Path) -> bool:

@@ -147,7 +147,9 @@ def _section(z: float, contours: list[FloatArray], name: str) -> Section:
     for loop in loops:
         if len(loop) <= _CHECKED and crosses_itself(loop[None])[0]:
             raise InputError(
-                "a contour crosses itself", where=name, fix="the file is damaged, or repair it where it was drawn"
+                "a contour crosses itself",
+                where=name,
+                fix="the file is damaged, or repair it where it was drawn",
             )
     depths = nesting_depths(loops, name)
     made = [_oriented(loop, hole=depth % 2 == 1) for loop, depth in zip(loops, depths, strict=True)]
@@ -179,8 +181,8 @@ def _notices(z: FloatArray, where: str) -> tuple[Notice, ...]:
     if len(wide):
         worst = int(np.argmax(gaps))
         text = (
-            f"{where}: {len(wide)} gaps without a contour; the widest is {gaps[worst]:.4g} mm from z = {z[worst]:.4g}"
-            f" mm, {usual:.4g} mm between others: what lies there is interpolated"
+            f"{where}: {len(wide)} gaps without a contour; the widest is {gaps[worst]:.4g} mm from "
+            f"z = {z[worst]:.4g} mm, {usual:.4g} mm between others: what lies there is interpolated"
         )
         return (Notice("gap", text),)
     if np.ptp(gaps) > UNEVEN * usual:
