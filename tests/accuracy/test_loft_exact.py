@@ -62,7 +62,7 @@ def test_eleven_sections_at_mid_thickness_or_with_faces(case):
 
 
 def _name(case):
-    return max((name for name in phantoms.NAMES if name in case), key=len)
+    return max((name for name in phantoms.SOLID if name in case), key=len)
 
 
 def test_potatoes_in_any_pose_are_limited_by_where_they_end():
@@ -120,7 +120,7 @@ def turned(loop):
     )
 
 
-@pytest.mark.parametrize("name", phantoms.NAMES)
+@pytest.mark.parametrize("name", phantoms.SOLID)
 @pytest.mark.parametrize(
     ("change", "bound"), [(started_elsewhere, 1e-9), (reversed_loop, 1e-9), (mirrored, 1e-5), (turned, 1e-4)]
 )

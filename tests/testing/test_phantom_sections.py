@@ -36,7 +36,7 @@ def off_boundary(phantom, loop, z):
 
 
 @pytest.mark.parametrize("rotation", [None, 5, (20.0, 35.0, 50.0)])
-@pytest.mark.parametrize("name", phantoms.NAMES)
+@pytest.mark.parametrize("name", phantoms.SOLID)
 def test_points_lie_on_the_boundary(name, rotation):
     phantom = phantoms.make(name, rotation=rotation, offset=OFFSET)
     for section in phantom.contour_stack(6, points=120).sections:
@@ -45,7 +45,7 @@ def test_points_lie_on_the_boundary(name, rotation):
 
 
 @pytest.mark.parametrize("rotation", [None, 5])
-@pytest.mark.parametrize("name", [name for name in phantoms.NAMES if name not in {"box", "prism"}])
+@pytest.mark.parametrize("name", [name for name in phantoms.SOLID if name not in {"box", "prism"}])
 def test_points_are_spread_evenly_between_corners(name, rotation):
     phantom = phantoms.make(name, rotation=rotation, offset=OFFSET)
     for section in phantom.contour_stack(5, points=200).sections:
@@ -73,7 +73,7 @@ def test_section_areas_add_up_to_the_volume(name):
     assert (4 * fine - coarse) / 3 == pytest.approx(phantom.volume, rel=1e-7)
 
 
-@pytest.mark.parametrize("name", phantoms.NAMES)
+@pytest.mark.parametrize("name", phantoms.SOLID)
 def test_section_areas_of_posed_bodies_add_up_to_the_volume(name):
     """A(z) has kinks where edges, waists and dimples begin and end: the midpoint rule over many sections."""
     phantom = phantoms.make(name, rotation=8, offset=OFFSET)
@@ -81,7 +81,7 @@ def test_section_areas_of_posed_bodies_add_up_to_the_volume(name):
     assert np.mean(areas) * phantom.height == pytest.approx(phantom.volume, rel=5e-4)
 
 
-@pytest.mark.parametrize("name", phantoms.NAMES)
+@pytest.mark.parametrize("name", phantoms.SOLID)
 def test_in_its_own_pose_every_section_is_one_filled_loop(name):
     phantom = phantoms.make(name, offset=OFFSET)
     for section in phantom.contour_stack(41, points=60).sections:

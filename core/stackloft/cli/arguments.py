@@ -114,8 +114,10 @@ def names_of(text: str | None) -> tuple[str, ...]:
 
 
 PHANTOMS = (
-    *("apple", "banana", "box", "cone", "cylinder", "double-cone", "dumbbell", "ellipsoid", "frustum"),
-    *("meat", "potato", "prism", "superellipsoid", "twisted-bar", "two-lobed"),
+    *("apple", "banana", "blind-hole", "box", "coil", "cone", "cylinder", "double-cone", "dumbbell"),
+    *("ellipsoid", "frustum", "hollow-sphere", "horseshoe", "meat", "potato", "prism", "ring-branch"),
+    *("superellipsoid", "torus", "tube", "twisted-bar", "two-bodies", "two-cavities", "two-lobed"),
+    *("walnut", "y-branch"),
 )
 """Names for the help text, which imports no phantom; a test compares them with the phantoms' own."""
 

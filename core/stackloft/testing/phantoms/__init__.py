@@ -7,21 +7,25 @@
 (11, True)
 """
 
-from stackloft.testing.phantoms.catalogue import NAMES, make
+from stackloft.testing.phantoms.catalogue import NAMES, SOLID, make
 from stackloft.testing.phantoms.contour_file import Contours
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
 from stackloft.testing.phantoms.scans import Scans
+from stackloft.testing.phantoms.topology import TOPOLOGY, Topology
 from stackloft.testing.phantoms.writing import write_contours, write_phantom, write_photos
 
 __all__ = [
     "NAMES",
+    "SOLID",
+    "TOPOLOGY",
     "Contours",
     "Phantom",
     "Photographs",
     "Realism",
     "Scans",
+    "Topology",
     "make",
     "write_contours",
     "write_phantom",

@@ -2,7 +2,8 @@
 
 ::
 
-      fields   body = { X : every field(X) <= 0 }     each smooth; where two are zero is an edge
+      fields   body = { X : every field(X) <= 0 }     each smooth; where two are zero is an edge;
+               or a union of such parts               (a blind hole, a limb grown on to a ring)
       patches  boundary = union of X(u, v)            each smooth on its rectangle, outward
 
 Both in the body's own frame, millimetres; a pose moves it. The two descriptions are written down
@@ -11,13 +12,13 @@ separately, and tests hold them against each other.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.testing.phantoms.dual import Array
 
 Field = Callable[[Array], Array]
@@ -59,6 +60,7 @@ class Body:
 
     fields: tuple[Field, ...]
     patches: tuple[Patch, ...]
+    """Those of the boundary alone: what lies inside another part is left out."""
     volume: float
     """mm³, to 1e-9"""
     area: float
@@ -67,8 +69,37 @@ class Body:
     """(k, 3) mm: the sharp points (an apex, a polyhedron's vertices)."""
     parameters: Mapping[str, float] = field(default_factory=dict)
     """What it was made from, for the record."""
+    parts: tuple[tuple[int, ...], ...] = ()
+    """The body is the union of parts, each the points where all its fields (indices) are ≤ 0; none given: one
+    part with every field."""
+    detail: int = 121
+    """Steps of the grid across a section that finds its loops; more for loops that are thin or close."""
 
     @property
     def polyhedral(self) -> bool:
         """True when every field is plane: then the body is a convex polyhedron."""
-        return all(isinstance(piece, Plane) for piece in self.fields)
+        return all(isinstance(piece, Plane) for piece in self.fields) and len(self.parts) < 2
+
+
+def deciding(values: FloatArray, parts: Sequence[Sequence[int]]) -> IntArray:
+    """Return which field decides about each point, (n): the largest in a part, the least of parts.
+
+    Parameters
+    ----------
+    values : (fields, n) array
+        The fields at n points, or distances in their stead.
+    parts : sequence of sequences of int
+        `Body.parts`.
+
+    Examples
+    --------
+    >>> values = np.array([[1.0, -2.0], [2.0, -3.0], [-1.0, 5.0]])
+    >>> deciding(values, ()).tolist(), deciding(values, ((0, 1), (2,))).tolist()
+    ([1, 2], [2, 0])
+    """
+    if len(parts) < 2:
+        return np.asarray(values.argmax(axis=0))
+    pick = [np.asarray(part)[values[list(part)].argmax(axis=0)] for part in parts]
+    picked = np.stack(pick)
+    least = np.take_along_axis(values, picked, axis=0).argmin(axis=0)
+    return np.asarray(picked[least, np.arange(values.shape[1])])

@@ -16,14 +16,20 @@ from stackloft.testing.phantoms import ellipsoids, polyhedra, round_solids
 from stackloft.testing.phantoms.apple import apple
 from stackloft.testing.phantoms.banana import banana
 from stackloft.testing.phantoms.body import Body
+from stackloft.testing.phantoms.coil import coil
+from stackloft.testing.phantoms.drilled import blind_hole, tube
+from stackloft.testing.phantoms.hollow import hollow_sphere, two_cavities, walnut
+from stackloft.testing.phantoms.limbs import horseshoe, y_branch
 from stackloft.testing.phantoms.meat import meat
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.pose import rotation_matrix
 from stackloft.testing.phantoms.potato import potato
+from stackloft.testing.phantoms.rings import ring_with_branch, torus
 from stackloft.testing.phantoms.twisted_bar import twisted_bar
+from stackloft.testing.phantoms.two_bodies import two_bodies
 from stackloft.testing.phantoms.two_lobed import dumbbell, two_lobed
 
-BODIES: dict[str, Callable[..., Body]] = {
+SOLID: dict[str, Callable[..., Body]] = {
     "apple": apple,
     "banana": banana,
     "box": polyhedra.box,
@@ -39,6 +45,20 @@ BODIES: dict[str, Callable[..., Body]] = {
     "superellipsoid": ellipsoids.superellipsoid,
     "twisted-bar": twisted_bar,
     "two-lobed": two_lobed,
+}
+"""Bodies of which, in their own frame, every section across z is one loop without a hole."""
+BODIES: dict[str, Callable[..., Body]] = SOLID | {
+    "blind-hole": blind_hole,
+    "coil": coil,
+    "hollow-sphere": hollow_sphere,
+    "horseshoe": horseshoe,
+    "ring-branch": ring_with_branch,
+    "torus": torus,
+    "tube": tube,
+    "two-bodies": two_bodies,
+    "two-cavities": two_cavities,
+    "walnut": walnut,
+    "y-branch": y_branch,
 }
 """Name to the function that makes the body; the function's keywords are the phantom's parameters."""
 NAMES = tuple(BODIES)

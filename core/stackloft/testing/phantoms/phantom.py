@@ -120,18 +120,17 @@ class Phantom:
         if not (low - slack <= z <= high + slack) or points < 8:
             raise UsageError("no such section", where=self.name, found=f"z = {z:g} mm, {points} points",
                              expected=f"z in {low:g} to {high:g} mm and at least 8 points")  # fmt: skip
-        fields = [piece for piece in self.body.fields if not self._is_flush(piece, z)]
+        kept = [i for i, piece in enumerate(self.body.fields) if not self._is_flush(piece, z)]
+        fields = [self.body.fields[i] for i in kept]
         if self.body.polyhedral:
             planes = [piece for piece in fields if isinstance(piece, Plane)]
             loops = polygon_section(planes, self.rotation, self.offset, z)
         else:
             box = self._box(z)
             size = float((box[1] - box[0]).max())
-            loops = (
-                trace(PlaneCut(tuple(fields), self.rotation, self.offset, z, size), box, points)
-                if size
-                else ()
-            )
+            parts = tuple(tuple(kept.index(i) for i in part if i in kept) for part in self.body.parts)
+            cut = PlaneCut(tuple(fields), self.rotation, self.offset, z, size, parts)
+            loops = trace(cut, box, points, self.body.detail) if size else ()
         if not loops:
             raise UsageError("the plane only touches the body", where=self.name, found=f"z = {z:g} mm")
         return loops
@@ -190,7 +189,7 @@ class Phantom:
         values = np.array([piece(own[:, None])[0] for piece in self.body.fields])
         return (
             "round"
-            if np.count_nonzero(values > -1e-7 * max(1.0, float(np.abs(values).max()))) == 1
+            if np.count_nonzero(np.abs(values) < 1e-7 * max(1.0, float(np.abs(values).max()))) == 1
             else "auto"
         )
 

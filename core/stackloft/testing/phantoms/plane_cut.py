@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stackloft.model.arrays import FloatArray, IntArray
-from stackloft.testing.phantoms.body import Field
+from stackloft.testing.phantoms.body import Field, deciding
 from stackloft.testing.phantoms.dual import STEP
 
 _ROUNDS = 60
@@ -29,6 +29,8 @@ class PlaneCut:
     """mm"""
     size: float
     """mm, a length of the order of the section's; steps are limited by it."""
+    parts: tuple[tuple[int, ...], ...] = ()
+    """`stackloft.testing.phantoms.body.Body.parts`"""
 
     def values(self, piece: int, p: FloatArray) -> FloatArray:
         """Return field `piece` at plane points (2, n)."""
@@ -42,9 +44,9 @@ class PlaneCut:
         return along[0].real, np.stack([value.imag / STEP for value in along])
 
     def worst(self, p: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Return the largest field (n) and which one it is (n)."""
+        """Return the field that decides (n), the largest of its part, and which one it is (n)."""
         values = np.stack([self.values(piece, p) for piece in range(len(self.fields))])
-        pieces = values.argmax(axis=0)
+        pieces = deciding(values, self.parts)
         return values[pieces, np.arange(values.shape[1])], pieces
 
     def nearest(self, p: FloatArray) -> IntArray:
@@ -56,8 +58,7 @@ class PlaneCut:
         for piece in range(len(self.fields)):
             value, gradient = self.values_and_gradients(piece, p)
             distances.append(value / (np.hypot(*gradient) + _LEVEL))
-        found: IntArray = np.stack(distances).argmax(axis=0)
-        return found
+        return deciding(np.stack(distances), self.parts)
 
     def project(self, p: FloatArray, piece: int | None = None) -> FloatArray:
         """Return the points moved along gradients onto the boundary (or onto one field's zero), (2, n)."""

@@ -18,8 +18,8 @@ from stackloft.model.contour_stack import Loop
 from stackloft.testing.phantoms.nesting import oriented
 from stackloft.testing.phantoms.plane_cut import PlaneCut
 
-_GRID = 121
 _TINY = 1e-9
+_SAME = 1e-5
 _SPREADS = 3
 _FITS = 12
 
@@ -37,7 +37,9 @@ class _Arc:
         return float(np.hypot(*np.diff(self.points)).sum())
 
 
-def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tuple[Loop, ...]:
+def trace(
+    cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int, detail: int = 121
+) -> tuple[Loop, ...]:
     """Return the loops of the section inside `box` with about `points` points on each.
 
     Parameters
@@ -48,21 +50,39 @@ def trace(cut: PlaneCut, box: tuple[FloatArray, FloatArray], points: int) -> tup
         Lower and upper corner of a rectangle about the section, mm; it is grown or shrunk to fit.
     points : int
         Points on each loop; corners are among them.
+    detail : int
+        Steps of the grid across the box; a loop narrower than a step may be missed.
     """
     found = []
-    for ring in _rings(cut, box):
+    for ring in _rings(cut, box, detail):
         arcs = _arcs(cut, ring)
         if arcs:
             found.append(_loop(cut, arcs, points))
-    return oriented(found)
+    return oriented(_told_once(found))
 
 
-def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray]) -> list[FloatArray]:
+def _told_once(loops: Sequence[Loop]) -> list[Loop]:
+    """Return the loops less repeated ones: a lens thinner than a grid step comes in crumbs."""
+    kept: list[Loop] = []
+    for loop in loops:
+        reach = float(np.ptp(loop.points, axis=0).max())
+        same = [
+            other
+            for other in kept
+            if abs(abs(other.signed_area) - abs(loop.signed_area)) < _SAME * reach**2
+            and np.abs(other.points.mean(axis=0) - loop.points.mean(axis=0)).max() < _SAME * reach
+        ]
+        if abs(loop.signed_area) > _SAME * reach**2 and not same:
+            kept.append(loop)
+    return kept
+
+
+def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray], detail: int) -> list[FloatArray]:
     """Return closed polylines (2, k), last point not repeated, near the boundary."""
     low, high = box
     rings: list[FloatArray] = []
     for _ in range(_FITS):
-        rings, cut_off = _grid_rings(cut, low, high)
+        rings, cut_off = _grid_rings(cut, low, high, detail)
         if cut_off:
             low, high = low - 0.3 * (high - low), high + 0.3 * (high - low)
             continue
@@ -77,14 +97,16 @@ def _rings(cut: PlaneCut, box: tuple[FloatArray, FloatArray]) -> list[FloatArray
     return rings
 
 
-def _grid_rings(cut: PlaneCut, low: FloatArray, high: FloatArray) -> tuple[list[FloatArray], bool]:
+def _grid_rings(
+    cut: PlaneCut, low: FloatArray, high: FloatArray, detail: int
+) -> tuple[list[FloatArray], bool]:
     """Return the rings found on a grid over a rectangle, and whether its border cuts the section off."""
     from skimage.measure import find_contours  # noqa: PLC0415 - heavy, and not needed by polyhedra
 
-    x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
+    x, y = (np.linspace(low[axis], high[axis], detail) for axis in (0, 1))
     X, Y = np.meshgrid(x, y, indexing="ij")
     field = cut.worst(np.stack([X.ravel(), Y.ravel()]))[0].reshape(X.shape)
-    cell = (high - low) / (_GRID - 1)
+    cell = (high - low) / (detail - 1)
     rings = [(low + cell * ring[:-1]).T for ring in find_contours(field, 0.0)]  # type: ignore[no-untyped-call]
     border = np.concatenate([field[0], field[-1], field[:, 0], field[:, -1]])
     return [ring for ring in rings if ring.shape[1] >= 3], bool((border <= 0).any())
@@ -125,7 +147,7 @@ def _corners(
     value, piece = cut.worst(corner[:, None])
     hidden = int(piece[0])
     slope = np.hypot(*cut.values_and_gradients(hidden, corner[:, None])[1][:, 0])
-    if depth > 3 or hidden in {first, second} or value[0] <= _TINY * cut.size * slope:
+    if depth > 3 or hidden in {first, second} or abs(value[0]) <= _TINY * cut.size * slope:
         return [(second, corner)]
     return _corners(cut, first, hidden, corner, depth + 1) + _corners(cut, hidden, second, corner, depth + 1)
 
