@@ -1,5 +1,6 @@
 """The readers of scans pass the kit that strangers run."""
 
+import cv2  # noqa: F401 - its import changes the environment, which the kit watches
 import numpy as np
 import pydicom
 import pytest
@@ -9,11 +10,14 @@ import tifffile
 from stackloft.registry import find
 from stackloft.testing.conformance.reader_case import ReaderCase
 from stackloft.testing.conformance.reader_checks import reader_checks
+from stackloft.testing.phantoms.scan_bruker import write_bruker
 from stackloft.testing.phantoms.scan_dicom import write_dicom
 from stackloft.testing.phantoms.scan_grid import ScanGrid
 from stackloft.testing.phantoms.scan_itk import write_mha, write_nifti, write_nrrd
+from stackloft.testing.phantoms.scan_seg import write_dicom_seg
 from stackloft.testing.phantoms.scan_tiff import write_tiff
 from stackloft.testing.phantoms.scan_volume import ScanVolume
+from stackloft.testing.phantoms.structure_set import add_region, structure_bytes, structure_set
 
 
 def volume(slices, **changes):
@@ -95,9 +99,37 @@ def npz_without_spacing(folder, slices):
     return folder / "volume.npz"
 
 
+def bruker(folder, slices):
+    write_bruker(volume(slices), folder)
+    return folder
+
+
+def bruker_without_spacing(folder, slices):
+    path = bruker(folder, slices) / "visu_pars"
+    path.write_text(path.read_text().replace("##$VisuCoreExtent=", "##$VisuCoreOther="))
+    return folder
+
+
+def dicom_seg(folder, slices):
+    return write_dicom_seg(volume(slices), folder)[0]
+
+
+def rtstruct(folder, slices):
+    data = structure_set()
+    turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    rings = [(10 + k % 3) * np.column_stack([np.cos(turn), np.sin(turn)]) for k in range(slices)]
+    add_region(
+        data, 1, "rings", [np.column_stack([ring, np.full(24, 2.5 * k)]) for k, ring in enumerate(rings)]
+    )
+    path = folder / "RS"
+    path.write_bytes(structure_bytes(data))
+    return path
+
+
 GIVEN = {"pixel_size": "0.3mm", "thickness": "2.5mm"}
 DICOM = find("reader", "dicom").plugin
 ITK, TIFF, NUMPY = (find("reader", name).plugin for name in ("itk", "tiff", "numpy"))
+BRUKER, SEG, RTSTRUCT = (find("reader", name).plugin for name in ("bruker", "dicom-seg", "rtstruct"))
 CASES = {
     "classic": ReaderCase(DICOM, dicom(), without_spacing=dicom_without_spacing),
     "multiframe": ReaderCase(DICOM, dicom(multiframe=True)),
@@ -113,6 +145,9 @@ CASES = {
     "tiff": ReaderCase(TIFF, tiff, without_spacing=tiff_without_spacing),
     "tiff-folder": ReaderCase(TIFF, tiff_folder, GIVEN, tuple(GIVEN)),
     "npy": ReaderCase(NUMPY, npy, GIVEN, tuple(GIVEN)),
+    "bruker": ReaderCase(BRUKER, bruker, without_spacing=bruker_without_spacing),
+    "dicom-seg": ReaderCase(SEG, dicom_seg),
+    "rtstruct": ReaderCase(RTSTRUCT, rtstruct),
     "npz": ReaderCase(NUMPY, npz, without_spacing=npz_without_spacing),
 }
 WHOLE = {"read-small-memory": "a packed volume is unpacked whole, first to tell labels from grey levels"}

@@ -6,7 +6,6 @@ Names of regions are kept, unless a part of the patient's name or number is in t
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,12 +16,12 @@ from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.errors import InputError
 from stackloft_plugins.readers.dicom_file import ClampedFile, read_elements, safely
 from stackloft_plugins.readers.dicom_header import PRIVATE
+from stackloft_plugins.readers.dicom_person import PERSON, person_words, shown_name
 
 if TYPE_CHECKING:
     from pydicom import Dataset
 
-_PERSON = ("PatientName", "PatientID", "PatientBirthDate")
-_KEYWORDS = ("SOPClassUID", "SpecificCharacterSet", "StructureSetROISequence", "ROIContourSequence", *_PERSON)
+_KEYWORDS = ("SOPClassUID", "SpecificCharacterSet", "StructureSetROISequence", "ROIContourSequence", *PERSON)
 _FARTHEST = 1e5
 """mm: no scanner reaches that far; a coordinate beyond is damage."""
 CLOSED = frozenset({"CLOSED_PLANAR", "CLOSEDPLANAR_XOR", "CLOSED_PLANAR_XOR"})
@@ -69,10 +68,9 @@ def read_structure_set(path: Path, *, keep_identifiers: bool = False) -> Structu
     keywords = (*_KEYWORDS, *PRIVATE) if keep_identifiers else _KEYWORDS
     with safely(path, "its contours"), ClampedFile(path) as stream:
         data = read_elements(stream, keywords)
-        person = _person(data)
-        names = {
-            int(item.ROINumber): _name(item, person) for item in data.get("StructureSetROISequence") or ()
-        }
+        person = person_words(data)
+        listed = data.get("StructureSetROISequence") or ()
+        names = {int(item.ROINumber): shown_name(item.get("ROIName"), person) for item in listed}
         drawn = data.get("ROIContourSequence") or ()
         regions = tuple(_region(item, names, path) for item in drawn)
         kept = [(key, str(data.get(key))) for key in PRIVATE if data.get(key)] if keep_identifiers else []
@@ -127,16 +125,3 @@ def _numbers(element: Any) -> FloatArray:
         text = value.replace(b"\0", b" ").decode("ascii").strip()
         return np.array([float(part) for part in text.split("\\")] if text else [])
     return np.array(value, dtype=np.float64).reshape(-1)
-
-
-def _person(data: Dataset) -> frozenset[str]:
-    """Return the parts of the patient's name, number and birth date, to be kept out of what is shown."""
-    words = " ".join(str(data.get(key) or "") for key in _PERSON)
-    return frozenset(part.casefold() for part in re.split(r"[\W_]+", words) if len(part) >= 3)
-
-
-def _name(item: Dataset, person: frozenset[str]) -> str:
-    """Return a region's name, or nothing where it tells who the patient is."""
-    name = " ".join(str(item.get("ROIName") or "").split())[:64]
-    shown = "".join(letter for letter in name if letter.isprintable())
-    return "" if any(part in shown.casefold() for part in person) else shown

@@ -24,6 +24,8 @@ def must_be_same(one: Any, other: Any, when: str) -> None:
     must(len(list(_leaves(one))) == len(list(_leaves(other))), f"the products differ in size {when}")
     for k in range(len(one) if isinstance(one, (SliceStack, Segmentation)) else 0):
         must(np.array_equal(_picture(one, k), _picture(other, k)), f"slice {k} shows something else {when}")
+        same = np.array_equal(_field(one, k), _field(other, k))
+        must(same, f"the body on slice {k} is another {when}")
 
 
 def must_be_frozen(product: Any) -> None:
@@ -48,6 +50,8 @@ def must_hand_out_fresh_slices(stack: SliceStack) -> None:
 
 def _leaves(value: Any, name: str = "product") -> Iterator[tuple[str, Any]]:
     """Yield what a product is made of; functions, and how it was learned, are left out."""
+    if callable(value):
+        return
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         for item in dataclasses.fields(value):
             if item.name != "provenance":
@@ -60,13 +64,21 @@ def _leaves(value: Any, name: str = "product") -> Iterator[tuple[str, Any]]:
     elif isinstance(value, Mapping):
         for key in sorted(value, key=str):
             yield from _leaves(value[key], f"{name}[{key!r}]")
-    elif not callable(value):
+    else:
         yield name, value
 
 
 def _picture(product: SliceStack | Segmentation, k: int) -> Any:
     stack = product.stack if isinstance(product, Segmentation) else product
     return stack.decode(k)
+
+
+def _field(product: SliceStack | Segmentation, k: int) -> Any:
+    """Return a slice's field above its level; nothing of a stack that is not segmented yet."""
+    if isinstance(product, SliceStack):
+        return np.zeros(0)
+    section = product.field_of(k, product.stack.decode(k))
+    return section.values - section.level
 
 
 def _short(value: Any) -> str:

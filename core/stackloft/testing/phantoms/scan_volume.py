@@ -30,6 +30,8 @@ class ScanVolume:
     """Whether the values are labels."""
     syntax: str = "explicit"
     multiframe: bool = False
+    levels: tuple[float, float] = (-1000.0, 40.0)
+    """HU of air and body."""
 
     def corner(self, k: int) -> FloatArray:
         """Return pixel (0, 0) of slice `k` in patient millimetres, (3)."""

@@ -15,9 +15,11 @@ from stackloft.testing.phantoms.answer import answer
 from stackloft.testing.phantoms.files import made_folder, write_json
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.pose import rotation_matrix
+from stackloft.testing.phantoms.scan_bruker import write_bruker
 from stackloft.testing.phantoms.scan_dicom import write_dicom
 from stackloft.testing.phantoms.scan_grid import ScanGrid, scan_grid
 from stackloft.testing.phantoms.scan_itk import write_nifti, write_nrrd
+from stackloft.testing.phantoms.scan_seg import write_dicom_seg
 from stackloft.testing.phantoms.scan_tiff import write_tiff
 from stackloft.testing.phantoms.scan_volume import ScanVolume
 
@@ -26,8 +28,12 @@ WRITERS: dict[str, Callable[[ScanVolume, Path], list[Path]]] = {
     "nrrd": write_nrrd,
     "nifti": write_nifti,
     "tiff": write_tiff,
+    "dicom-seg": write_dicom_seg,
+    "bruker": write_bruker,
 }
 """Form to the function that writes a volume into a folder."""
+SHEARED = ("dicom", "dicom-seg", "bruker")
+"""Forms that can hold a tilted gantry's slices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +92,7 @@ class Scans:
     def __post_init__(self) -> None:
         if self.form not in WRITERS:
             raise UsageError("unknown form", where="form", found=self.form, expected=", ".join(WRITERS))
-        if self.form != "dicom" and self.tilt:
+        if self.form not in SHEARED and self.tilt:
             raise UsageError(
                 f"{self.form} cannot hold a sheared grid", where="tilt", found=f"{self.tilt:g}°", fix="dicom"
             )
@@ -121,6 +127,7 @@ class Scans:
             label=self.label > 0,
             syntax=self.syntax,
             multiframe=self.multiframe,
+            levels=self.levels,
         )
 
     def _slices(self, phantom: Phantom) -> tuple[FloatArray, float]:
