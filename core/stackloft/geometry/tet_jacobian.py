@@ -68,7 +68,7 @@ def jacobian_bounds(elements: FloatArray) -> JacobianBounds:
     >>> jacobian_bounds(np.stack([corner, corner[[0, 2, 1, 3]]])).low.round(6).tolist()
     [0.707107, -0.707107]
     """
-    pieces = bezier_jacobians(elements) * _scale(elements)[:, None]
+    pieces = bezier_jacobians(elements) * jacobian_scale(elements)[:, None]
     owner = np.arange(len(pieces))
     low = np.full(len(pieces), np.inf)
     high = pieces[:, _corners(pieces.shape[1])].min(axis=1)
@@ -105,7 +105,13 @@ def bezier_jacobians(elements: FloatArray) -> FloatArray:
         part = slice(start, start + _BATCH)
         columns = [slopes[axis] @ elements[part] for axis in range(3)]
         values[part] = np.einsum("mgd,mgd->mg", columns[0], np.cross(columns[1], columns[2]))
-    return np.asarray(values @ np.linalg.inv(_bernstein(degree, exponents(3, degree) / max(degree, 1))).T)
+    return np.asarray(values @ bernstein_inverse(degree).T)
+
+
+@lru_cache
+def bernstein_inverse(degree: int) -> FloatArray:
+    """Return the matrix from a polynomial's values on the lattice of `degree` to its Bézier coefficients."""
+    return np.asarray(np.linalg.inv(_bernstein(degree, exponents(3, degree) / max(degree, 1))))
 
 
 def _bernstein(degree: int, points: FloatArray) -> FloatArray:
@@ -131,7 +137,7 @@ def _cutters(count: int) -> FloatArray:
     """Return (8, count, count) matrices from coefficients to those of the eight halved tetrahedra."""
     degree = {1: 0, 20: 3, 84: 6}[count]
     lattice = exponents(3, degree) / max(degree, 1)
-    inverse = np.linalg.inv(_bernstein(degree, lattice))
+    inverse = bernstein_inverse(degree)
     corner = np.vstack([np.zeros(3), np.eye(3)])
     middle = {frozenset((a, b)): 0.5 * (corner[a] + corner[b]) for a, b in TET_EDGES}
     whole = [[corner[a], *(middle[frozenset((a, b))] for b in range(4) if b != a)] for a in range(4)]
@@ -148,7 +154,7 @@ def _cut(pieces: FloatArray) -> FloatArray:
     return np.asarray(halves.reshape(-1, pieces.shape[1]))
 
 
-def _scale(elements: FloatArray) -> FloatArray:
+def jacobian_scale(elements: FloatArray) -> FloatArray:
     """Return √2 over the largest product of three straight edges that meet at a corner; 0 where all are 0."""
     corners = elements[:, :4]
     length = {frozenset(edge): np.linalg.norm(corners[:, edge[1]] - corners[:, edge[0]], axis=1)
