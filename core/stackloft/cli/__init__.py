@@ -16,7 +16,9 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from stackloft.cli.app import app  # noqa: PLC0415 - importing stackloft.cli imports no Typer
+        from stackloft.cli.guard import Supervision  # noqa: PLC0415
 
+        Supervision.wanted = True
         app()
     except KeyboardInterrupt:  # while commands are imported; a command itself answers in `guard`
         print("stackloft: interrupted", file=sys.stderr)  # noqa: T201

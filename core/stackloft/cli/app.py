@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from stackloft.cli import arguments as a
-from stackloft.cli.guard import guarded
+from stackloft.cli.guard import answering, guarded
 from stackloft.cli.plugin_commands import plugin_commands
 from stackloft.cli.study_commands import study_commands
 
@@ -122,7 +122,7 @@ def info(
 
 
 @app.command()
-@guarded
+@answering
 def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
     name: a.PhantomName,
     form: a.Form,

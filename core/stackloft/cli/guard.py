@@ -26,7 +26,32 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+class Supervision:
+    """Whether commands are run in a child when strangers' plug-ins are there: by `main`, not by callers."""
+
+    wanted = False
+
+
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
+    """Return `command`, which meets plug-ins, answering for every failure of its own and of theirs.
+
+    An expected failure is one line and an exit status; so is a stranger's plug-in that crashes the process
+    (`stackloft.cli.supervisor`).
+    """
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        if not Supervision.wanted:
+            return command(*args, **kwargs)
+        Supervision.wanted = False  # once is enough: a child does its work itself
+        from stackloft.cli.supervisor import supervise  # noqa: PLC0415 - help needs no registry
+
+        return supervise(functools.partial(command, *args, **kwargs))
+
+    return answering(run)
+
+
+def answering(command: Callable[P, R]) -> Callable[P, R]:
     """Return `command` with every expected failure turned into one line and an exit status."""
 
     @functools.wraps(command)

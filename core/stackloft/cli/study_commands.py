@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from stackloft.cli import arguments as a
-from stackloft.cli.guard import guarded
+from stackloft.cli.guard import answering, guarded
 
 study_commands = typer.Typer()
 
@@ -26,7 +26,7 @@ TableFile = Annotated[
 
 
 @study_commands.command()
-@guarded
+@answering
 def regress(table: TableFile, out: a.Out = None, json: a.Json = False) -> None:
     """Compare estimated with measured volumes, and fit area to weight and volume."""
     from stackloft.cli.regress import run

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
+import numpy as np
+
 from stackloft.model.errors import StackloftError
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import SliceStack
 from stackloft.registry import Loaded, failure
+from stackloft.registry.work_notes import at_work
 
 
 def guarded(loaded: Loaded, call: Callable[[Any], Any], argument: Any) -> Any:
     """Return ``call(argument)``, checked against what the plug-in says it produces.
+
+    What a product does later, slice by slice, is answered for as well.
 
     Raises
     ------
@@ -18,7 +27,7 @@ def guarded(loaded: Loaded, call: Callable[[Any], Any], argument: Any) -> Any:
         The plug-in raised something that is no StackloftError, or returned another type; plug-in
         and distribution are named.
     """
-    return checked(loaded, blaming(loaded, call, argument))
+    return _answerable(loaded, checked(loaded, blaming(loaded, call, argument)))
 
 
 def checked(loaded: Loaded, product: Any) -> Any:
@@ -30,13 +39,43 @@ def checked(loaded: Loaded, product: Any) -> Any:
     return product
 
 
-def blaming(loaded: Loaded | None, call: Callable[..., Any], *arguments: Any) -> Any:
+def blaming(loaded: Loaded | None, call: Callable[..., Any], *arguments: Any, doing: str = "") -> Any:
     """Return ``call(*arguments)``; what is no StackloftError becomes a PluginError that names `loaded`."""
-    try:
+    if loaded is None:
         return call(*arguments)
+    try:
+        with at_work(loaded.listing, doing or getattr(call, "__name__", "its work")):
+            return call(*arguments)
     except StackloftError:
         raise
-    except Exception as error:
-        if loaded is None:
-            raise
+    except (Exception, SystemExit) as error:
         raise failure(loaded, error) from error
+
+
+def _answerable(loaded: Loaded, product: Any) -> Any:
+    """Return `product` with its slices' decoding, or their fields, laid to the plug-in's charge."""
+    if isinstance(product, SliceStack) and not _answered(product.decode):
+        return replace(product, decode=partial(_decoded, loaded, product.decode, product.shape))
+    if isinstance(product, Segmentation) and not _answered(product.field_of):
+        field_of = partial(_field_found, loaded, product.field_of)
+        return replace(product, stack=_answerable(loaded, product.stack), field_of=field_of)
+    return product
+
+
+def _answered(call: Callable[..., Any]) -> bool:
+    return isinstance(call, partial) and call.func in {_decoded, _field_found}
+
+
+def _decoded(loaded: Loaded, decode: Callable[[int], Any], shape: tuple[int, int], index: int) -> Any:
+    picture = blaming(loaded, decode, index, doing="decode")
+    if not isinstance(picture, np.ndarray) or picture.shape[:2] != tuple(shape):
+        found = f"{type(picture).__name__} {getattr(picture, 'shape', '')}".strip()
+        raise failure(loaded, TypeError(f"slice {index + 1} came as {found}, announced was {tuple(shape)}"))
+    return picture
+
+
+def _field_found(loaded: Loaded, field_of: Callable[..., Any], index: int, picture: Any) -> Any:
+    found = blaming(loaded, field_of, index, picture, doing="segment")
+    if not isinstance(found, SectionField):
+        raise failure(loaded, TypeError(f"the field of slice {index + 1} came as {type(found).__name__}"))
+    return found

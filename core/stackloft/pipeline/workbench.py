@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from typing import Any
 
 from stackloft.contracts.sink import Sink, Streaming
@@ -14,7 +13,7 @@ from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import PluginError, StackloftError
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import SliceStack
-from stackloft.pipeline.blame import blaming, guarded
+from stackloft.pipeline.blame import guarded
 from stackloft.pipeline.chain_check import ladder
 from stackloft.pipeline.decoding import OwnSink, decode_once
 from stackloft.pipeline.plan import Plan, Step
@@ -116,7 +115,7 @@ class Workbench:
         others, self._sinks = (self._sinks, ()) if self._is_own(item) else ((), self._sinks)
         start = time.perf_counter()
         try:
-            given = decode_once(self._blamed(item.value), tuple(own.values()), others, self._progress)
+            given = decode_once(item.value, tuple(own.values()), others, self._progress)
             self.sink_products = self.sink_products or given
         except StackloftError as error:
             self._failures |= dict.fromkeys(own, error)
@@ -148,17 +147,6 @@ class Workbench:
     def _took(self, identity: str, stage: str, seconds: float) -> None:
         self.seconds[identity] = self.seconds.get(identity, 0.0) + seconds
         self.stages[stage] = self.stages.get(stage, 0.0) + seconds
-
-    def _blamed(self, segmentation: Segmentation) -> Segmentation:
-        """Return the same slices, with the plug-in named whenever decoding or segmenting one crashes."""
-        reader = self._plan.reader.loaded if self._plan.reader else None
-        segmenter = self._plan.segmenter.loaded if self._plan.segmenter else reader
-        stack = segmentation.stack
-        return replace(
-            segmentation,
-            stack=replace(stack, decode=partial(blaming, reader, stack.decode)),
-            field_of=partial(blaming, segmenter, segmentation.field_of),
-        )
 
     def _once(self, identity: str, stage: str, make: Callable[[], Any]) -> Item:
         if identity in self._failures:

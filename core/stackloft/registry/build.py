@@ -10,6 +10,7 @@ from stackloft.registry.fields import OptionField, fields_of
 from stackloft.registry.find import find
 from stackloft.registry.loading import Loaded
 from stackloft.registry.options_model import schema, validate
+from stackloft.registry.work_notes import at_work
 
 
 def build(family: str, name: str, options: Mapping[str, Any] | None = None) -> Any:
@@ -36,16 +37,17 @@ def build(family: str, name: str, options: Mapping[str, Any] | None = None) -> A
 def instantiate(loaded: Loaded, values: Mapping[str, Any]) -> Any:
     """Return the plug-in's instance with validated `values`; its own checks speak as UsageErrors."""
     try:
-        return loaded.plugin(**values)
+        with at_work(loaded.listing, "its options' check"):
+            return loaded.plugin(**values)
     except StackloftError:
         raise
     except (ValueError, TypeError) as error:
         raise UsageError(str(error), where=loaded.key) from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise failure(loaded, error) from error
 
 
-def failure(loaded: Loaded, error: Exception) -> PluginError:
+def failure(loaded: Loaded, error: BaseException) -> PluginError:
     """Return what a person sees when a plug-in fails in a way that it does not explain itself."""
     listing = loaded.listing
     return PluginError(

@@ -68,17 +68,19 @@ def ask_child(function: str, argument: Any = None, timeout: float = 120.0) -> An
     seconds, stderr = time.perf_counter() - start, _COLOURS.sub("", done.stderr.decode(errors="replace"))
     if done.returncode == 0 and done.stdout:
         return Answer(json.loads(done.stdout), "", stderr, seconds)
-    return Answer(None, _how_it_ended(done.returncode), stderr, seconds)
+    return Answer(None, how_it_ended(done.returncode), stderr, seconds)
 
 
-def _how_it_ended(status: int) -> str:
-    """Return a child's exit status in words.
+def how_it_ended(status: int) -> str:
+    """Return a child's exit status (negative: the signal it died of) in words.
 
     Examples
     --------
-    >>> _how_it_ended(-11)
+    >>> how_it_ended(-11)
     'crashed the process (SIGSEGV)'
     """
+    if -status == signal.SIGKILL:
+        return "was killed (SIGKILL), as when memory runs out"
     if status < 0:
         return f"crashed the process ({signal.Signals(-status).name})"
     return f"left the process with status {status}"

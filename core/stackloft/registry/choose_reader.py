@@ -11,6 +11,7 @@ from stackloft.model.errors import InputError, PluginError
 from stackloft.registry.find import find, nearest
 from stackloft.registry.loading import Loaded, Quarantined, load
 from stackloft.registry.scan import catalogue
+from stackloft.registry.work_notes import at_work
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +70,9 @@ def probe_all(path: Path) -> tuple[Probe, ...]:
 
 def _probe(reader: Loaded, path: Path) -> Probe:
     try:
-        confidence = float(reader.plugin().probe(path))
-    except Exception as error:  # noqa: BLE001 - a stranger's probe may raise anything
+        with at_work(reader.listing, "probe"):
+            confidence = float(reader.plugin().probe(path))
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a stranger's probe may raise anything
         return Probe(reader, 0.0, f"its probe failed: {type(error).__name__}: {error}")
     if not 0 <= confidence <= 1 or math.isnan(confidence):
         return Probe(reader, 0.0, f"its probe answered {confidence:g}, which is not within 0 to 1")

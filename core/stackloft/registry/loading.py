@@ -12,6 +12,7 @@ from stackloft.model.errors import PluginError
 from stackloft.model.notices import Notice
 from stackloft.registry.member_checks import faults_of, minor_api_notice
 from stackloft.registry.scan import Listing, scan
+from stackloft.registry.work_notes import at_work
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,9 +72,12 @@ def load(listing: Listing) -> Loaded | Quarantined:
     >>> load(Listing("reader", "ghost", "acme", "1", "acme_ghost:Reader")).reason
     "ModuleNotFoundError: No module named 'acme_ghost'"
     """
+    if listing in _ASIDE:
+        return Quarantined(listing, _ASIDE[listing])
     try:
-        plugin = _resolve(listing.target)
-        faults = faults_of(listing.family, plugin)
+        with at_work(listing, "import"):
+            plugin = _resolve(listing.target)
+            faults = faults_of(listing.family, plugin)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a stranger's module may raise anything
         return Quarantined(listing, f"{type(error).__name__}: {error}", traceback.format_exc())
     if faults:
@@ -81,8 +85,19 @@ def load(listing: Listing) -> Loaded | Quarantined:
     return Loaded(listing, plugin, minor_api_notice(listing.key, plugin.api))
 
 
+_ASIDE: dict[Listing, str] = {}
+"""Plug-ins that are not to be loaded, and why."""
+
+
+def set_aside(listing: Listing, reason: str) -> None:
+    """Quarantine a plug-in without loading it: it has crashed a process before."""
+    _ASIDE[listing] = reason
+    load.cache_clear()
+
+
 def rescan() -> None:
     """Forget the scan and what was loaded, for a process in which distributions came or went."""
+    _ASIDE.clear()
     scan.cache_clear()
     load.cache_clear()
 

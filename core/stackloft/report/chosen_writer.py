@@ -10,6 +10,7 @@ from stackloft.model.errors import InputError, StackloftError, UsageError
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.registry import Loaded, catalogue, failure, find, instantiate, validate
+from stackloft.registry.work_notes import at_work
 
 Settings = Mapping[str, Mapping[str, Any]]
 """Options by ``writer``, name or ``writer.name``; the more particular wins."""
@@ -50,10 +51,11 @@ class ChosenWriter:
             As the writer says, or as the system refuses.
         """
         try:
-            self.instance.write(product, stream)
+            with at_work(self.loaded.listing, "write"):
+                self.instance.write(product, stream)
         except (StackloftError, OSError):
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise failure(self.loaded, error) from error
 
     def fitting(self, products: Sequence[Any]) -> Any:

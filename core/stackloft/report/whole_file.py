@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from stackloft.model.errors import OutputError
+from stackloft.registry.work_notes import note
 
 _FIXES = {
     errno.ENOSPC: "free some disk space or give --out another disk",
@@ -46,6 +47,7 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     ('all of it', 1)
     """
     neighbour = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    note("part", str(neighbour.absolute()))
     try:
         with neighbour.open("xb") as stream:
             yield stream
@@ -57,6 +59,7 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     finally:
         with suppress(OSError):
             neighbour.unlink(missing_ok=True)
+        note("gone", str(neighbour.absolute()))
 
 
 def writable_folder(path: Path) -> Path:
