@@ -9,6 +9,7 @@ from: the phase of the first Fourier coefficient of the curve (Kuhl & Giardina 1
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from stackloft.geometry.arc_splines import WRAP, spline_tangents
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+AT_ONCE = 16_000
+"""Vertices worked on at once, so that what is in between stays in the processor's cache."""
+_JOINED = ("points", "ends", "leaving", "arriving", "lengths", "starts", "centroids", "areas")
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(4)
 _GAUSS_X, _GAUSS_W = 0.5 * (_GAUSS_X + 1.0), 0.5 * _GAUSS_W
 
@@ -97,10 +101,18 @@ def fit_curves(loops: list[FloatArray], corners: list[IntArray]) -> CurveStack:
     >>> bool(abs(curves.areas[0] - np.pi) < 1e-6)
     True
     """
-    p0, p1, d0, d1 = _hermite_segments(loops, corners)
     counts = np.array([len(loop) for loop in loops])
     first = np.concatenate([[0], np.cumsum(counts)])
-    return _with_measures(p0, p1, d0, d1, first)
+    cuts = [0, *(np.flatnonzero(np.diff(first[1:-1] // AT_ONCE)) + 1), len(loops)]
+    parts = []
+    for a, b in pairwise(cuts):
+        segments = _hermite_segments(loops[a:b], corners[a:b])
+        parts.append(_with_measures(*segments, first[a : b + 1] - first[a]))
+    if len(parts) == 1:
+        return parts[0]
+    joined = [np.concatenate([getattr(part, name) for part in parts]) for name in _JOINED]
+    knots = [part.knots[:-1] + a for part, a in zip(parts, cuts, strict=False)]
+    return CurveStack(*joined[:4], np.append(np.concatenate(knots), float(len(loops))), first, *joined[4:])
 
 
 def _hermite_segments(
@@ -156,7 +168,9 @@ def _with_measures(
     local = point - origin[section]
     cross = local[..., 0] * slope[..., 1] - local[..., 1] * slope[..., 0]
     areas = 0.5 * np.add.reduceat(_GAUSS_W @ cross, first[:-1])
-    moments = np.add.reduceat(np.einsum("g,gn,gnd->nd", _GAUSS_W, cross, local), first[:-1])
+    weighted = _GAUSS_W[:, None] * cross
+    moment = np.stack([(weighted * local[..., axis]).sum(axis=0) for axis in (0, 1)], axis=1)
+    moments = np.add.reduceat(moment, first[:-1])
     centroids = origin + moments / (3.0 * areas[:, None])
     speed = np.hypot(slope[..., 0], slope[..., 1])
     segment = _GAUSS_W @ speed
@@ -166,8 +180,8 @@ def _with_measures(
     # first Fourier coefficient of the curve; its phase is the canonical start (Kuhl & Giardina 1982)
     phase = fraction + _GAUSS_X[:, None] * (segment / lengths[section])
     arm = (point - centroids[section]) @ np.array([1.0, 1.0j])
-    weighted = _GAUSS_W @ (arm * np.exp(-2j * np.pi * phase) * speed)
-    coefficient = np.add.reduceat(weighted, first[:-1])
+    turned = _GAUSS_W @ (arm * np.exp(-2j * np.pi * phase) * speed)
+    coefficient = np.add.reduceat(turned, first[:-1])
     starts = -np.angle(coefficient) / (2.0 * np.pi)
     knots = np.append(section + fraction, float(len(lengths)))
     return CurveStack(p0, p1, d0, d1, knots, first, lengths, starts, centroids, areas)

@@ -43,7 +43,7 @@ class Section:
     """File or slice label, for messages."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class ContourStack:
     """Sections in order along the axis."""
 

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from stackloft.geometry.curve_stack import CurveStack, fit_curves
+from stackloft.geometry.curve_stack import CurveStack
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack
-from stackloft.sectioning.loop_curves import ready_loop
+from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
 
 def dense_loops(contours: ContourStack, step: float) -> list[list[FloatArray]]:
@@ -29,12 +29,11 @@ def dense_loops(contours: ContourStack, step: float) -> list[list[FloatArray]]:
     >>> polygon[:5].tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]
     """
-    ready = [[ready_loop(loop, contours, s.name) for loop in s.loops] for s in contours.sections]
-    flat = [loop for loops in ready for loop in loops]
-    if not flat:
+    ready = ready_loops(contours)
+    if not any(ready):
         return [[] for _ in ready]
-    curves = fit_curves([loop.points for loop in flat], [loop.corners for loop in flat])
-    polygons = iter([_polygon(curves, k, step) for k in range(len(flat))])
+    curves = ready_curves(contours)
+    polygons = iter([_polygon(curves, k, step) for k in range(len(curves))])
     return [[next(polygons) for _ in loops] for loops in ready]
 
 

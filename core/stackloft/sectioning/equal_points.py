@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stackloft.geometry.correspondence import slide_points
-from stackloft.geometry.curve_stack import CurveStack, fit_curves
+from stackloft.geometry.curve_stack import CurveStack
 from stackloft.geometry.point_density import Spread, spread_by_turning
 from stackloft.geometry.seams import solve_phases
 from stackloft.geometry.simple_polygon import crosses_itself
@@ -16,7 +16,7 @@ from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.sectioning.corner_columns import CornerChain, follow_corners, place_at, share_points
-from stackloft.sectioning.loop_curves import ready_loop
+from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
 COARSEST = 0.55
 """Largest difference in area between a loop's polygon and its curve; 4 points on a circle give 0.525."""
@@ -60,11 +60,8 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
             "a solid needs at least 2 sections", where=contours.sections[0].name if loops else None,
             found=str(len(loops)), fix="give the whole stack, not one slice",
         )  # fmt: skip
-    ready = [
-        ready_loop(loop, contours, section.name)
-        for loop, section in zip(loops, contours.sections, strict=True)
-    ]
-    curves = fit_curves([loop.points for loop in ready], [loop.corners for loop in ready])
+    ready = [loop for own in ready_loops(contours) for loop in own]
+    curves = ready_curves(contours)
     _check_fit(curves, ready, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)

@@ -1,14 +1,54 @@
-"""A loop made ready for curve fitting, whatever it came from."""
+"""Loops made ready for curve fitting, whatever they came from; each stack's once."""
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 
+from stackloft.geometry.curve_stack import CurveStack, fit_curves
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.errors import InputError
 from stackloft.sectioning.smoothing import smooth_loop
+
+
+_READY: WeakKeyDictionary[ContourStack, tuple[tuple[Loop, ...], ...]] = WeakKeyDictionary()
+_CURVES: WeakKeyDictionary[ContourStack, CurveStack] = WeakKeyDictionary()
+
+
+def ready_loops(contours: ContourStack) -> tuple[tuple[Loop, ...], ...]:
+    """Return every section's loops by `ready_loop`; remembered as long as the stack itself is there.
+
+    Raises
+    ------
+    InputError
+        A loop without area.
+    """
+    ready = _READY.get(contours)
+    if ready is None:
+        ready = tuple(tuple(ready_loop(loop, contours, s.name) for loop in s.loops) for s in contours.sections)
+        _READY[contours] = ready
+    return ready
+
+
+def ready_curves(contours: ContourStack) -> CurveStack:
+    """Return the curves through all loops of `ready_loops`, one after the other; remembered likewise.
+
+    Raises
+    ------
+    InputError
+        A loop without area, or no loop at all.
+    """
+    curves = _CURVES.get(contours)
+    if curves is None:
+        flat = [loop for loops in ready_loops(contours) for loop in loops]
+        if not flat:
+            raise InputError("there is no loop on any section")
+        curves = fit_curves([loop.points for loop in flat], [loop.corners for loop in flat])
+        _CURVES[contours] = curves
+    return curves
 
 
 def ready_loop(loop: Loop, contours: ContourStack, name: str) -> Loop:

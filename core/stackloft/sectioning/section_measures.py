@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stackloft.geometry.curve_stack import fit_curves
 from stackloft.model.arrays import FloatArray, IntArray
-from stackloft.model.contour_stack import ContourStack, Loop
-from stackloft.sectioning.loop_curves import ready_loop
+from stackloft.model.contour_stack import ContourStack
+from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,18 +29,14 @@ class LoopMeasures:
 
 def measure_loops(contours: ContourStack) -> LoopMeasures:
     """Return the figures of every loop, by the same curves that the loft goes through."""
-    loops: list[Loop] = []
-    section, sign = [], []
-    for k, one in enumerate(contours.sections):
-        for loop in one.loops:
-            loops.append(ready_loop(loop, contours, one.name))
-            section.append(k)
-            sign.append(-1.0 if loop.hole else 1.0)
-    if not loops:
+    loops = ready_loops(contours)
+    if not any(loops):
         empty = np.empty(0)
         return LoopMeasures(empty.astype(int), empty, empty, empty, np.empty((0, 2)))
-    curves = fit_curves([loop.points for loop in loops], [loop.corners for loop in loops])
-    return LoopMeasures(np.array(section), np.array(sign), curves.areas, curves.lengths, curves.centroids)
+    section = np.repeat(np.arange(len(loops)), [len(own) for own in loops])
+    sign = np.array([-1.0 if loop.hole else 1.0 for one in contours.sections for loop in one.loops])
+    curves = ready_curves(contours)
+    return LoopMeasures(section, sign, curves.areas, curves.lengths, curves.centroids)
 
 
 def section_areas(contours: ContourStack) -> FloatArray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import make_lsq_spline
 
+from stackloft.geometry.uniform_spline import fit_uniform
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import Loop
 
@@ -18,6 +19,8 @@ KNOT_SPACING = 6.0
 STEP = 1.5
 """Pixels between the vertices returned."""
 _DEGREE = 3
+_OVERLAP = 10  # spans by which a closed loop is wrapped; what happens at their ends is not felt within
+_FEWEST = 2  # vertices in each span, for a fit on even knots
 
 
 def smooth_loop(loop: Loop, pixel: float) -> Loop:
@@ -64,15 +67,17 @@ def _smooth_closed(points: FloatArray, pixel: float) -> FloatArray:
     chord = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     around = np.concatenate([[0.0], np.cumsum(chord)])
     total = around[-1]
-    overlap = min(10.0 * KNOT_SPACING * pixel, total)
-    t = np.concatenate([around[:-1] - total, around[:-1], around[:-1] + total])
-    inside = (t > -overlap) & (t < total + overlap)
     spans = max(4, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
-    knots = np.arange(-10 * spans, 11 * spans) * (total / spans)
-    knots = knots[(knots > t[inside][0] + 1e-9) & (knots < t[inside][-1] - 1e-9)]
     count = max(16, _at_most(total / (STEP * pixel), 2 * len(points)))
-    samples = np.arange(count) * (total / count)
-    return _fit(t[inside], np.tile(points, (3, 1))[inside], knots, samples)
+    samples = np.arange(count) * (spans / count)
+    overlap = min(_OVERLAP, spans)
+    t = around[:-1] * (spans / total)
+    before, after = np.searchsorted(t, [spans - overlap, overlap])
+    t = np.concatenate([t[before:] - spans, t, t[:after] + spans])
+    wrapped = np.concatenate([points[before:], points, points[:after]])
+    if np.bincount((t + overlap).astype(np.int64), minlength=spans + 2 * overlap).min() >= _FEWEST:
+        return fit_uniform(t + overlap, wrapped, spans + 2 * overlap, samples + overlap)
+    return _fit(t, wrapped, np.arange(1 - overlap, spans + overlap, dtype=np.float64), samples)
 
 
 def _smooth_arc(points: FloatArray, pixel: float) -> FloatArray:

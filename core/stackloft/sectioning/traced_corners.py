@@ -26,6 +26,7 @@ from stackloft.model.contour_stack import Loop
 STEP = 0.5
 """Pixels between the samples that are fitted."""
 
+_SLACK = 1e-6  # degrees: rounding
 _SIGNIFICANT = 5.0  # standard errors of the bend; neighbouring samples are correlated, hence not 2
 
 
@@ -52,7 +53,7 @@ class CornerRules:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sides:
-    """At every sample, what its two sides say."""
+    """At samples that may be corners, what their two sides say."""
 
     turn: FloatArray
     """(n) degrees between the sides' directions, signed"""
@@ -99,11 +100,17 @@ def with_corners(loop: Loop, pixel: float, rules: CornerRules | None = None) -> 
     window = min(rules.window, along[-1] / 16)
     if window < rules.shortest:
         return loop
-    sides = _sides(_resampled(loop.points / pixel, along, count), rules.gap, window)
-    places = _corner_samples(sides, rules, round(window / STEP))
-    if not len(places):
+    reach = np.arange(round(rules.gap / STEP), round((rules.gap + window) / STEP) + 1)
+    samples = _resampled(loop.points / pixel, along, count)
+    turning = _turning(samples, reach, rules.turn)
+    if not len(turning):
         return loop
-    return _sharpened(loop, along, places * along[-1] / count, pixel * sides.apex[places], rules.gap)
+    sides = _sides(samples, turning, reach)
+    chosen = _corner_samples(sides, rules, turning, count, round(window / STEP))
+    if not len(chosen):
+        return loop
+    places = turning[chosen] * along[-1] / count
+    return _sharpened(loop, along, places, pixel * sides.apex[chosen], rules.gap)
 
 
 def _arc_length(points: FloatArray) -> FloatArray:
@@ -120,18 +127,31 @@ def _resampled(points: FloatArray, along: FloatArray, count: int) -> FloatArray:
     return np.column_stack(columns)
 
 
-def _sides(samples: FloatArray, gap: float, window: float) -> _Sides:
-    """Fit both sides of every sample."""
-    reach = np.arange(round(gap / STEP), round((gap + window) / STEP) + 1)
-    here = np.arange(len(samples))
-    ahead = _fitted(samples[(here + reach[:, None]) % len(samples)], STEP * reach.astype(np.float64))
-    behind = _fitted(samples[(here - reach[:, None]) % len(samples)], STEP * reach.astype(np.float64))
+def _turning(samples: FloatArray, reach: IntArray, turn: float) -> IntArray:
+    """Return the samples at which the straight lines fitted to both sides differ by `turn` degrees or more.
+
+    A line's direction is one filter along the loop; a side behind one sample is the side ahead of another.
+    """
+    way = samples @ np.array([1.0, 1.0j])
+    slope = np.linalg.pinv(np.vander(STEP * reach.astype(np.float64), 2, increasing=True))[1]
+    around = np.concatenate([way, way[: reach[-1]]])
+    ahead = np.convolve(around[reach[0] :], slope[::-1], mode="valid")
+    behind = np.roll(ahead, reach[0] + reach[-1])
+    between = behind.conj() * ahead
+    return np.flatnonzero(between.real <= np.cos(np.radians(turn - _SLACK)) * np.abs(between))
+
+
+def _sides(samples: FloatArray, here: IntArray, reach: IntArray) -> _Sides:
+    """Fit both sides of the samples `here`."""
+    along = STEP * reach.astype(np.float64)
+    ahead = _fitted(samples[(here + reach[:, None]) % len(samples)], along)
+    behind = _fitted(samples[(here - reach[:, None]) % len(samples)], along)
     apex = _meeting(ahead.point, ahead.direction, behind.point, behind.direction)
     return _Sides(
         turn=_angle(-behind.direction, ahead.direction),
         chord_turn=_angle(-behind.chord, ahead.chord),
         apex=apex,
-        miss=np.linalg.norm(apex - samples, axis=1),
+        miss=np.linalg.norm(apex - samples[here], axis=1),
         roughness=np.maximum(ahead.roughness, behind.roughness),
     )
 
@@ -187,9 +207,10 @@ def _meeting(start: FloatArray, forth: FloatArray, end: FloatArray, back: FloatA
     return meeting
 
 
-def _corner_samples(sides: _Sides, rules: CornerRules, apart: int) -> IntArray:
-    """Return the numbers of the samples nearest to corners, in order around the loop."""
-    count = len(sides.turn)
+def _corner_samples(
+    sides: _Sides, rules: CornerRules, here: IntArray, count: int, apart: int
+) -> IntArray:
+    """Return which of the samples `here` (of `count`) are nearest to corners, in order around the loop."""
     with np.errstate(invalid="ignore"):
         likely = (
             (np.abs(sides.turn) >= rules.turn)
@@ -199,9 +220,10 @@ def _corner_samples(sides: _Sides, rules: CornerRules, apart: int) -> IntArray:
             & (sides.roughness <= rules.roughness)
         )
     chosen: list[int] = []
-    for place in sorted(np.flatnonzero(likely).tolist(), key=lambda place: sides.miss[place]):
-        if all(min((place - other) % count, (other - place) % count) > apart for other in chosen):
-            chosen.append(place)
+    for k in sorted(np.flatnonzero(likely).tolist(), key=lambda k: sides.miss[k]):
+        away = [int(here[k] - here[other]) for other in chosen]
+        if all(min(step % count, -step % count) > apart for step in away):
+            chosen.append(k)
     return np.array(sorted(chosen), dtype=np.int64)
 
 
