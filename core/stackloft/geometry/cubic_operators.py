@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_banded
 
 from stackloft.geometry.arc_splines import end_derivative_weights
 
@@ -126,35 +127,59 @@ def broken_periodic_tangents(step: FloatArray, breaks: BoolArray) -> tuple[Float
     return arriving, leaving
 
 
-def broken_open_tangents(
-    nodes: FloatArray, breaks: BoolArray, given: tuple[bool, bool] = (False, False)
+def tangents_across(
+    nodes: FloatArray,
+    breaks: BoolArray,
+    values: FloatArray,
+    slopes: tuple[FloatArray | None, FloatArray | None] = (None, None),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (arriving, leaving) tangent matrices (n, n + 2) of an open spline broken at some nodes.
+    """Return (arriving, leaving) tangents (n, k) at the nodes of open splines broken at some of them.
 
     Parameters
     ----------
     nodes : (n,) array
         Increasing parameter values.
     breaks : (n,) bool array
-        Inner nodes where the curve may turn sharply.
-    given : pair of bool
-        As in `open_tangents`.
+        Inner nodes where the curves may turn sharply.
+    values : (n, k) array
+        Of k curves.
+    slopes : pair of (k,) arrays or None
+        Tangents given at the first and last node.
 
     Examples
     --------
-    >>> arriving, leaving = broken_open_tangents(np.arange(3.0), np.array([False, True, False]))
-    >>> roof = np.array([0.0, 1.0, 0.0, 0.0, 0.0])
-    >>> float((arriving @ roof)[1]), float((leaving @ roof)[1])
+    >>> roof = np.array([[0.0], [1.0], [0.0]])
+    >>> arriving, leaving = tangents_across(np.arange(3.0), np.array([False, True, False]), roof)
+    >>> float(arriving[1, 0]), float(leaving[1, 0])
     (1.0, -1.0)
     """
     n = len(nodes)
-    arriving, leaving = np.zeros((n, n + 2)), np.zeros((n, n + 2))
+    arriving, leaving = np.empty_like(values), np.empty_like(values)
     marks = np.unique(np.concatenate([[0], np.flatnonzero(breaks), [n - 1]]))
     for a, b in pairwise(marks):
-        outer = (given[0] and a == 0, given[1] and b == n - 1)
-        operator = open_tangents(nodes[a : b + 1], outer)
-        columns = np.concatenate([np.arange(a, b + 1), [n, n + 1]])
-        leaving[a:b, columns] = operator[:-1]
-        arriving[a + 1 : b + 1, columns] = operator[1:]
+        outer = (slopes[0] if a == 0 else None, slopes[1] if b == n - 1 else None)
+        tangents = _open_spline_tangents(nodes[a : b + 1], values[a : b + 1], outer)
+        leaving[a:b], arriving[a + 1 : b + 1] = tangents[:-1], tangents[1:]
     arriving[0], leaving[-1] = leaving[0], arriving[-1]
     return arriving, leaving
+
+
+def _open_spline_tangents(
+    nodes: FloatArray, values: FloatArray, slopes: tuple[FloatArray | None, FloatArray | None]
+) -> FloatArray:
+    """Return the tangents of open cubic splines, (n, k); a free end as in `open_tangents`."""
+    n = len(nodes)
+    step = np.diff(nodes)
+    before, after = step[:-1], step[1:]
+    rise = np.diff(values, axis=0) / step[:, None]
+    bands, right = np.zeros((3, n)), np.empty_like(values)
+    bands[0, 2:], bands[1, 1:-1], bands[2, :-2] = before, 2.0 * (before + after), after
+    right[1:-1] = 3.0 * (after[:, None] * rise[:-1] + before[:, None] * rise[1:])
+    for end, inwards, slope in ((0, 1, slopes[0]), (-1, -1, slopes[1])):
+        bands[1, end] = 1.0
+        near = slice(None, None, inwards)
+        weights = end_derivative_weights(nodes[None, near][:, :4])[0]
+        right[end] = weights @ values[near][:4] if slope is None else slope
+    return np.asarray(
+        solve_banded((1, 1), bands, right, overwrite_ab=True, overwrite_b=True, check_finite=False)
+    )

@@ -19,7 +19,7 @@ from stackloft.geometry.arc_splines import WRAP, spline_tangents
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-AT_ONCE = 16_000
+AT_ONCE = 8_000
 """Vertices worked on at once, so that what is in between stays in the processor's cache."""
 _JOINED = ("points", "ends", "leaving", "arriving", "lengths", "starts", "centroids", "areas")
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(4)
@@ -158,30 +158,38 @@ def _with_measures(
     p0: FloatArray, p1: FloatArray, d0: FloatArray, d1: FloatArray, first: IntArray
 ) -> CurveStack:
     """Return the stack with perimeters, areas, centroids and canonical starts, by Gauss per segment."""
-    x = _GAUSS_X[:, None, None]
-    rise = p1 - p0
-    a, b = d0 - rise, rise - d1
-    point = p0 + x * (rise + (1.0 - x) * (a * (1.0 - x) + b * x))
-    slope = rise + (1.0 - 2.0 * x) * (a * (1.0 - x) + b * x) + x * (1.0 - x) * (b - a)
+    t = _GAUSS_X[:, None]
     section = np.repeat(np.arange(len(first) - 1), np.diff(first))
     origin = p0[first[:-1]]
-    local = point - origin[section]
-    cross = local[..., 0] * slope[..., 1] - local[..., 1] * slope[..., 0]
-    areas = 0.5 * np.add.reduceat(_GAUSS_W @ cross, first[:-1])
-    weighted = _GAUSS_W[:, None] * cross
-    moment = np.stack([(weighted * local[..., axis]).sum(axis=0) for axis in (0, 1)], axis=1)
-    moments = np.add.reduceat(moment, first[:-1])
-    centroids = origin + moments / (3.0 * areas[:, None])
-    speed = np.hypot(slope[..., 0], slope[..., 1])
-    segment = _GAUSS_W @ speed
+    place, slope = zip(*(_along(p0[:, k], p1[:, k], d0[:, k], d1[:, k], t) for k in (0, 1)), strict=True)
+    local = [place[k] - origin[section, k] for k in (0, 1)]
+    cross = _GAUSS_W[:, None] * (local[0] * slope[1] - local[1] * slope[0])
+    areas = 0.5 * np.add.reduceat(cross.sum(axis=0), first[:-1])
+    moment = np.stack([(cross * local[k]).sum(axis=0) for k in (0, 1)], axis=1)
+    arms = np.add.reduceat(moment, first[:-1]) / (3.0 * areas[:, None])
+    centroids = origin + arms
+    speed = _GAUSS_W[:, None] * np.hypot(slope[0], slope[1])
+    segment = speed.sum(axis=0)
     lengths = np.add.reduceat(segment, first[:-1])
     before = np.concatenate([[0.0], np.cumsum(segment)])[:-1]
     fraction = (before - before[first[:-1]][section]) / lengths[section]
     # first Fourier coefficient of the curve; its phase is the canonical start (Kuhl & Giardina 1982)
-    phase = fraction + _GAUSS_X[:, None] * (segment / lengths[section])
-    arm = (point - centroids[section]) @ np.array([1.0, 1.0j])
-    turned = _GAUSS_W @ (arm * np.exp(-2j * np.pi * phase) * speed)
-    coefficient = np.add.reduceat(turned, first[:-1])
-    starts = -np.angle(coefficient) / (2.0 * np.pi)
+    turn = 2.0 * np.pi * (fraction + t * (segment / lengths[section]))
+    cosine, sine = speed * np.cos(turn), speed * np.sin(turn)
+    x, y = (local[k] - arms[section, k] for k in (0, 1))
+    real = np.add.reduceat((x * cosine + y * sine).sum(axis=0), first[:-1])
+    imaginary = np.add.reduceat((y * cosine - x * sine).sum(axis=0), first[:-1])
+    starts = -np.arctan2(imaginary, real) / (2.0 * np.pi)
     knots = np.append(section + fraction, float(len(lengths)))
     return CurveStack(p0, p1, d0, d1, knots, first, lengths, starts, centroids, areas)
+
+
+def _along(
+    p0: FloatArray, p1: FloatArray, d0: FloatArray, d1: FloatArray, t: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return one coordinate of the cubics and its slope at t, (g, n) for (g, 1) t."""
+    rise = p1 - p0
+    a, b = d0 - rise, rise - d1
+    bend = a + t * (b - a)
+    bow = t * (1.0 - t)
+    return p0 + t * rise + bow * bend, rise + (1.0 - 2.0 * t) * bend + bow * (b - a)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.geometry.bezier_patch import HERMITE_TO_BEZIER, bernstein_slope
-from stackloft.geometry.cubic_operators import broken_open_tangents, broken_periodic_tangents
+from stackloft.geometry.cubic_operators import broken_periodic_tangents, tangents_across
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -114,14 +114,12 @@ def _or_zero(tangent: FloatArray | None, rows: Rows) -> FloatArray:
 
 def _across(data: FloatArray, ends: list[FloatArray], nodes: FloatArray, rows: Rows) -> FloatArray:
     """Return Bézier points across rows, (n - 1, N, 4, ...), of data (n, N, ...) at the nodes."""
-    given = (rows.tangents[0] is not None, rows.tangents[1] is not None)
-    arriving, leaving = broken_open_tangents(nodes, rows.creases, given)
     n = len(nodes)
-    flat = np.concatenate([data.reshape(n, -1), ends[0].reshape(1, -1), ends[1].reshape(1, -1)])
+    values = data.reshape(n, -1)
+    slopes = [end.ravel() if t is not None else None for end, t in zip(ends, rows.tangents, strict=True)]
+    arriving, leaving = tangents_across(nodes, rows.creases, values, (slopes[0], slopes[1]))
     step = np.diff(nodes)[:, None]
-    out = (leaving[:-1] @ flat) * step
-    into = (arriving[1:] @ flat) * step
-    values = flat[:n]
+    out, into = leaving[:-1] * step, arriving[1:] * step
     hermite = np.stack([values[:-1], values[1:], out, into], axis=1)  # (n - 1, 4, N...)
     bezier = np.matmul(HERMITE_TO_BEZIER, hermite).reshape(n - 1, 4, *data.shape[1:])
     return np.moveaxis(bezier, 1, 2)

@@ -28,7 +28,9 @@ def ready_loops(contours: ContourStack) -> tuple[tuple[Loop, ...], ...]:
     """
     ready = _READY.get(contours)
     if ready is None:
-        ready = tuple(tuple(ready_loop(loop, contours, s.name) for loop in s.loops) for s in contours.sections)
+        ready = tuple(
+            tuple(ready_loop(loop, contours, s.name) for loop in s.loops) for s in contours.sections
+        )
         _READY[contours] = ready
     return ready
 

@@ -207,9 +207,7 @@ def _meeting(start: FloatArray, forth: FloatArray, end: FloatArray, back: FloatA
     return meeting
 
 
-def _corner_samples(
-    sides: _Sides, rules: CornerRules, here: IntArray, count: int, apart: int
-) -> IntArray:
+def _corner_samples(sides: _Sides, rules: CornerRules, here: IntArray, count: int, apart: int) -> IntArray:
     """Return which of the samples `here` (of `count`) are nearest to corners, in order around the loop."""
     with np.errstate(invalid="ignore"):
         likely = (
