@@ -110,9 +110,9 @@ def fit_curves(loops: list[FloatArray], corners: list[IntArray]) -> CurveStack:
         parts.append(_with_measures(*segments, first[a : b + 1] - first[a]))
     if len(parts) == 1:
         return parts[0]
-    joined = [np.concatenate([getattr(part, name) for part in parts]) for name in _JOINED]
+    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _JOINED}
     knots = [part.knots[:-1] + a for part, a in zip(parts, cuts, strict=False)]
-    return CurveStack(*joined[:4], np.append(np.concatenate(knots), float(len(loops))), first, *joined[4:])
+    return CurveStack(knots=np.append(np.concatenate(knots), float(len(loops))), first=first, **joined)
 
 
 def _hermite_segments(

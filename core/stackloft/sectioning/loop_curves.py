@@ -13,7 +13,6 @@ from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.errors import InputError
 from stackloft.sectioning.smoothing import smooth_loop
 
-
 _READY: WeakKeyDictionary[ContourStack, tuple[tuple[Loop, ...], ...]] = WeakKeyDictionary()
 _CURVES: WeakKeyDictionary[ContourStack, CurveStack] = WeakKeyDictionary()
 

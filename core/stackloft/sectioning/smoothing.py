@@ -69,7 +69,7 @@ def _smooth_closed(points: FloatArray, pixel: float) -> FloatArray:
     total = around[-1]
     spans = max(4, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
     count = max(16, _at_most(total / (STEP * pixel), 2 * len(points)))
-    samples = np.arange(count) * (spans / count)
+    samples: FloatArray = np.arange(count) * np.float64(spans / count)
     overlap = min(_OVERLAP, spans)
     t = around[:-1] * (spans / total)
     before, after = np.searchsorted(t, [spans - overlap, overlap])

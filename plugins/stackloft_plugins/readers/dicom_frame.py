@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stackloft.model.arrays import FloatArray
+from stackloft_plugins.readers.dicom_plain import PlainSamples
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,3 +53,5 @@ class Frame:
     localizer: bool
     private: tuple[tuple[str, str], ...] = ()
     """What is kept of the patient, where a person asked for it."""
+    samples_at: PlainSamples | None = None
+    """Where the stored values of a plain file lie; None: pydicom finds them."""

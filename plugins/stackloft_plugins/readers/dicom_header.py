@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from stackloft.model.errors import InputError
 from stackloft_plugins.readers.dicom_file import ClampedFile, read_elements, safely
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_lookup import Lookup
+from stackloft_plugins.readers.dicom_plain import EXPLICIT_LITTLE, PlainHeader, plain_header
 
 if TYPE_CHECKING:
     from pydicom import Dataset
@@ -42,12 +44,31 @@ def read_frames(path: Path, *, keep_identifiers: bool = False) -> tuple[Frame, .
     InputError
         Damaged, no image, or without a place in space; the file is named, nothing private is quoted.
     """
+    plain = None if keep_identifiers else _plain_frame(path)
+    if plain is not None:
+        return (plain,)
     keywords = (*KEYWORDS, *PRIVATE) if keep_identifiers else KEYWORDS
     with safely(path, "its header"), ClampedFile(path) as stream:
-        return frames_of(read_elements(stream, keywords), path, keep_identifiers=keep_identifiers)
+        data = read_elements(stream, keywords)
+        syntax = str(data.file_meta.get("TransferSyntaxUID", IMPLICIT_LITTLE))
+        return frames_of(data, path, syntax, keep_identifiers=keep_identifiers)
 
 
-def frames_of(data: Dataset, path: Path, *, keep_identifiers: bool = False) -> tuple[Frame, ...]:
+def _plain_frame(path: Path) -> Frame | None:
+    """Return the one frame of a plain file; None when pydicom must look at it, or say what is wrong."""
+    try:
+        header = plain_header(path, KEYWORDS)
+        if header is None:
+            return None
+        frames = frames_of(header, path, EXPLICIT_LITTLE)
+        return replace(frames[0], samples_at=header.samples()) if len(frames) == 1 else None
+    except (InputError, OSError, TypeError, ValueError, AttributeError, OverflowError):
+        return None
+
+
+def frames_of(
+    data: Dataset | PlainHeader, path: Path, syntax: str, *, keep_identifiers: bool = False
+) -> tuple[Frame, ...]:
     """Return the frames that a file's header describes.
 
     Raises
@@ -60,7 +81,7 @@ def frames_of(data: Dataset, path: Path, *, keep_identifiers: bool = False) -> t
     groups = data.get("PerFrameFunctionalGroupsSequence")
     if count > 1 and (groups is None or len(groups) != count):
         raise _lacking(path, "a position for each of its frames", "functional groups of all frames")
-    common = _common(data, path, keep_identifiers=keep_identifiers)
+    common = _common(data, path, syntax, keep_identifiers=keep_identifiers)
     if not groups:
         return (_placed(common, Lookup(data, ()), 0, path.name),)
     shared = tuple(data.get("SharedFunctionalGroupsSequence") or ())[:1]
@@ -70,9 +91,9 @@ def frames_of(data: Dataset, path: Path, *, keep_identifiers: bool = False) -> t
     )
 
 
-def _common(data: Dataset, path: Path, *, keep_identifiers: bool) -> Frame:
+def _common(data: Dataset | PlainHeader, path: Path, syntax: str, *, keep_identifiers: bool) -> Frame:
     """Return what all frames of a file share; the place is filled in by `_placed`."""
-    bits, signed = int(data.BitsStored), bool(data.get("PixelRepresentation", 0))
+    bits, signed = int(data.get("BitsStored")), bool(data.get("PixelRepresentation", 0))
     number = data.get("SeriesNumber")
     kept = [(key, str(data.get(key))) for key in PRIVATE if data.get(key)] if keep_identifiers else []
     return Frame(
@@ -83,7 +104,7 @@ def _common(data: Dataset, path: Path, *, keep_identifiers: bool) -> Frame:
         series_number=None if number in {None, ""} else int(number),
         modality=_word(data.get("Modality")),
         order=(),
-        shape=(int(data.Rows), int(data.Columns)),
+        shape=(int(data.get("Rows")), int(data.get("Columns"))),
         samples=int(data.get("SamplesPerPixel", 1)),
         position=np.zeros(3),
         axes=np.zeros((2, 3)),
@@ -97,7 +118,7 @@ def _common(data: Dataset, path: Path, *, keep_identifiers: bool) -> Frame:
         padding=_padding(data),
         stored=(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1),
         lookup=bool(data.get("ModalityLUTSequence")),
-        syntax=str(data.file_meta.get("TransferSyntaxUID", IMPLICIT_LITTLE)),
+        syntax=syntax,
         localizer="LOCALIZER" in _words(data.get("ImageType")),
         private=tuple(kept),
     )
@@ -146,20 +167,29 @@ def _placed(common: Frame, lookup: Lookup, number: int, name: str) -> Frame:
 
 def _axes(cosines: FloatArray, path: Path) -> FloatArray:
     """Return the two unit vectors, made exactly perpendicular."""
-    row, column = cosines.reshape(2, 3)
-    lengths = np.linalg.norm(row), np.linalg.norm(column)
-    if not np.allclose(lengths, 1.0, atol=0.02) or abs(row @ column) > 0.02:
+    axes = _perpendicular(tuple(cosines.tolist()))
+    if axes is None:
         raise InputError(
             "Image Orientation (Patient) is no pair of perpendicular unit vectors",
             where=str(path),
             found=", ".join(f"{value:g}" for value in cosines),
         )
+    return axes
+
+
+@lru_cache
+def _perpendicular(cosines: tuple[float, ...]) -> FloatArray | None:
+    """Return two unit vectors near the given ones; None when those are far from being such."""
+    row, column = np.array(cosines).reshape(2, 3)
+    lengths = np.linalg.norm(row), np.linalg.norm(column)
+    if not np.allclose(lengths, 1.0, atol=0.02) or abs(row @ column) > 0.02:
+        return None
     row = row / lengths[0]
     column = column - (column @ row) * row
     return frozen_floats([row, column / np.linalg.norm(column)])
 
 
-def _check_image(data: Dataset, path: Path) -> None:
+def _check_image(data: Dataset | PlainHeader, path: Path) -> None:
     missing = [key for key in ("Rows", "Columns", "BitsAllocated", "BitsStored") if not data.get(key)]
     if missing:
         raise _lacking(path, f"{missing[0]}: it holds no picture", "image files alone")
@@ -170,27 +200,26 @@ def _check_image(data: Dataset, path: Path) -> None:
             found="MOSAIC in Image Type",
             fix="convert it with dcm2niix and read the NIfTI file, or export as enhanced multi-frame",
         )
-    samples = int(data.Rows) * int(data.Columns) * int(data.get("SamplesPerPixel") or 1)
-    if (
-        samples > MOST_SAMPLES
-        or int(data.BitsStored) > int(data.BitsAllocated)
-        or int(data.BitsAllocated) > 64
-    ):
+    rows, columns, stored, allocated = (
+        int(data.get(key)) for key in ("Rows", "Columns", "BitsStored", "BitsAllocated")
+    )
+    samples = rows * columns * int(data.get("SamplesPerPixel") or 1)
+    if samples > MOST_SAMPLES or stored > allocated or allocated > 64:
         raise InputError(
             "is damaged: its header claims an impossible picture",
             where=str(path),
-            found=f"{data.Columns} × {data.Rows} pixels, {data.BitsStored} of {data.BitsAllocated} bits",
+            found=f"{columns} × {rows} pixels, {stored} of {allocated} bits",
         )
 
 
-def _padding(data: Dataset) -> tuple[int, int] | None:
+def _padding(data: Dataset | PlainHeader) -> tuple[int, int] | None:
     value = data.get("PixelPaddingValue")
     if value is None or value == "":
         return None
     limit = data.get("PixelPaddingRangeLimit")
     ends = [int(value), int(value if limit in {None, ""} else limit)]
     if data.get("PixelRepresentation"):  # often written as if unsigned
-        half = 1 << int(data.BitsAllocated) - 1
+        half = 1 << int(data.get("BitsAllocated")) - 1
         ends = [end - 2 * half if end >= half else end for end in ends]
     return min(ends), max(ends)
 

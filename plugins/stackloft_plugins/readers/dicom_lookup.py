@@ -12,11 +12,13 @@ from stackloft.model.arrays import FloatArray
 if TYPE_CHECKING:
     from pydicom import Dataset
 
+    from stackloft_plugins.readers.dicom_plain import PlainHeader
+
 
 class Lookup:
     """Finds an element in a frame's own group, then the shared one, then the file."""
 
-    def __init__(self, data: Dataset, groups: tuple[Dataset, ...]) -> None:
+    def __init__(self, data: Dataset | PlainHeader, groups: tuple[Dataset, ...]) -> None:
         self._data = data
         self._groups = groups
 
@@ -39,7 +41,7 @@ class Lookup:
             raise ValueError(message)
         return numbers
 
-    def _holders(self, sequence: str) -> Iterator[Dataset]:
+    def _holders(self, sequence: str) -> Iterator[Dataset | PlainHeader]:
         for group in self._groups if sequence else ():
             items = group.get(sequence)
             if items:

@@ -30,7 +30,8 @@ def decode_frame(frame: Frame) -> Picture:
     InputError
         The pixels are damaged, cut off, or not of the size that the header claims.
     """
-    stored, data = _stored(frame)
+    plain = frame.samples_at.read(frame.path, frame.shape) if frame.samples_at is not None else None
+    stored, data = _stored(frame) if plain is None else (plain, None)
     if stored.shape[:2] != frame.shape or stored.ndim != (2 if frame.samples == 1 else 3):
         raise InputError(
             "is damaged: the picture is not of the size that its header claims",
@@ -41,7 +42,7 @@ def decode_frame(frame: Frame) -> Picture:
     if frame.samples > 1:
         return read_only(stored)
     grey = without_padding(stored, frame.padding)
-    if frame.lookup:
+    if frame.lookup and data is not None:
         return read_only(_looked_up(grey, data, frame))
     if frame.inverted and not frame.rescaled:
         grey = (sum(frame.stored) - grey.astype(np.int64)).astype(grey.dtype)
@@ -65,12 +66,12 @@ def without_padding(stored: NDArray[Any], padding: tuple[int, int] | None) -> ND
 
 
 def rescaled(stored: NDArray[Any], slope: float, intercept: float) -> NDArray[Any]:
-    """Return slope · stored + intercept; whole numbers stay whole, the rest becomes float.
+    """Return slope · stored + intercept; whole numbers stay whole (16 bit where they fit), others float.
 
     Examples
     --------
     >>> rescaled(np.array([[0, 4095]], dtype=np.uint16), 1.0, -1024.0)
-    array([[-1024,  3071]], dtype=int32)
+    array([[-1024,  3071]], dtype=int16)
     >>> rescaled(np.array([[2]], dtype=np.int16), 0.5, 0.25)
     array([[1.25]], dtype=float32)
     """
@@ -82,13 +83,18 @@ def rescaled(stored: NDArray[Any], slope: float, intercept: float) -> NDArray[An
         and stored.dtype.itemsize <= 2
         and abs(intercept) < 2**30
     ):
-        return stored.astype(np.int32) + np.int32(intercept)
+        shift = round(intercept)
+        low, high = (int(end) + shift for end in (stored.min(initial=0), stored.max(initial=0)))
+        narrow = min(low, shift) >= -(2**15) and max(high, shift) < 2**15
+        if not narrow:
+            return stored.astype(np.int32) + np.int32(shift)
+        return stored.astype(np.int16) + np.int16(shift)  # uint16 that wraps round comes back by the shift
     wide = np.float32 if stored.dtype.itemsize <= 2 else np.float64
     values = stored.astype(np.float64) * slope + intercept
     return values.astype(wide)
 
 
-def _stored(frame: Frame) -> tuple[NDArray[Any], Dataset]:
+def _stored(frame: Frame) -> tuple[NDArray[Any], Dataset | None]:
     """Return the stored values and the elements of the image group."""
     from pydicom import Dataset, dcmread  # noqa: PLC0415 - slow to import
     from pydicom.pixels.utils import pixel_array  # noqa: PLC0415

@@ -7,17 +7,21 @@ r"""The quick way through a plain DICOM file: explicit little-endian elements on
     7FE0 0010 | OW | 0 | 524288 | stored values …
 
 pydicom spends most of its time on generality that a slice of a scanner's series does not need. Whatever is
-not plain (another transfer syntax or byte order, wanted sequences, undefined lengths, groups out of order, odd
-text) is no error: None says that pydicom must read the file.
+not plain (another transfer syntax or byte order, wanted sequences, undefined lengths, elements out of order,
+odd text) is no error: None says that pydicom must read the file.
 """
 
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 EXPLICIT_LITTLE = "1.2.840.10008.1.2.1"
 _HEADER = 1 << 15
@@ -36,18 +40,58 @@ Tag = tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
+class PlainSamples:
+    """Where a file's stored values lie, little endian, row after row."""
+
+    at: int
+    """Byte"""
+    dtype: str
+    spare: int
+    """Bits of each value that are not used, and mean nothing."""
+
+    def read(self, path: Path, shape: tuple[int, int]) -> NDArray[Any] | None:
+        """Return the stored values, (rows, columns); None when the file is gone or too short."""
+        count = shape[0] * shape[1]
+        try:
+            values = np.fromfile(path, dtype=self.dtype, count=count, offset=self.at)
+        except OSError:
+            return None
+        if len(values) != count:
+            return None
+        whole = values << self.spare >> self.spare if self.spare else values
+        return whole.reshape(shape)
+
+
+@dataclass(frozen=True, slots=True)
 class PlainHeader:
-    """The wanted elements of a plain file, by keyword, and where its stored values lie."""
+    """The wanted elements of a plain file, by keyword, and where its pixel data lie."""
 
     values: dict[str, Any]
     pixels_at: int
-    """Byte at which the stored values begin."""
+    """Byte"""
     pixels_length: int
     """Bytes"""
 
-    def get(self, keyword: str) -> Any:
-        """Return an element's value as pydicom would give it; None where there is none."""
-        return self.values.get(keyword)
+    def get(self, keyword: str, default: Any = None) -> Any:
+        """Return an element's value as pydicom would give it, or the default where there is none."""
+        return self.values.get(keyword, default)
+
+    def samples(self) -> PlainSamples | None:
+        """Return where the samples of its one grey picture lie; None when they are not so simple."""
+        allocated, stored = self.get("BitsAllocated"), self.get("BitsStored")
+        need = self.get("Rows") * self.get("Columns") * allocated // 8
+        simple = (
+            allocated in {8, 16, 32}
+            and self.get("HighBit", stored - 1) == stored - 1
+            and self.get("SamplesPerPixel", 1) == 1
+            and self.get("NumberOfFrames") in {1, None}
+            and self.get("PhotometricInterpretation") in {"MONOCHROME1", "MONOCHROME2"}
+            and self.pixels_length in {need, need + 1}
+        )
+        kind = "i" if self.get("PixelRepresentation") else "u"
+        return (
+            PlainSamples(self.pixels_at, f"<{kind}{allocated // 8}", allocated - stored) if simple else None
+        )
 
 
 def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
@@ -62,42 +106,46 @@ def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
         head = stream.read(_HEADER)
     if head[128:132] != b"DICM":
         return None
+    wanted = _tags(keywords)
+    values: dict[str, Any] = {}
     try:
-        return _walked(head, _tags(keywords))
+        for tag, kind, start, length in _elements(head):
+            if tag == _PIXELS:
+                return PlainHeader(values, start, length)
+            value = _value(kind, head[start : start + length]) if tag == _SYNTAX or tag in wanted else None
+            if tag in wanted:
+                values[wanted[tag]] = value
+            elif tag == _SYNTAX and value != EXPLICIT_LITTLE:
+                return None
     except (struct.error, ValueError):
         return None
-
-
-def _walked(head: bytes, wanted: dict[Tag, str]) -> PlainHeader | None:
-    values: dict[str, Any] = {}
-    at, last, size = 132, (0, 0), len(head)
-    while at + 12 <= size:
-        tag = struct.unpack_from("<HH", head, at)
-        kind = head[at + 4 : at + 6]
-        if tag <= last:
-            return None
-        if kind in _SHORT:
-            length, start = int.from_bytes(head[at + 6 : at + 8], "little"), at + 8
-        elif kind in _LONG:
-            length, start = int.from_bytes(head[at + 8 : at + 12], "little"), at + 12
-        else:
-            return None
-        if length == _UNDEFINED:
-            return None
-        if tag == _PIXELS:
-            return PlainHeader(values, start, length) if kind in {b"OW", b"OB"} else None
-        raw = head[start : start + length]
-        if len(raw) < length or tag > _PIXELS:
-            return None
-        if tag == _SYNTAX and _value(kind, raw) != EXPLICIT_LITTLE:
-            return None
-        keyword = wanted.get(tag)
-        if keyword is not None:
-            if kind not in _TEXTS and kind not in _NUMBERS:
-                return None
-            values[keyword] = _value(kind, raw)
-        at, last = start + length, tag
     return None
+
+
+def _elements(head: bytes) -> Iterator[tuple[Tag, bytes, int, int]]:
+    """Yield tag, type, start and length of the elements up to the pixel data.
+
+    Raises
+    ------
+    ValueError
+        An element that is not plain.
+    """
+    at, last = 132, (0, 0)
+    while last != _PIXELS:
+        group, element, kind, short = struct.unpack_from("<HH2sH", head, at)
+        tag = (group, element)
+        if kind in _SHORT:
+            start, length = at + 8, short
+        elif kind in _LONG:
+            start, length = at + 12, int(struct.unpack_from("<I", head, at + 8)[0])
+        else:
+            raise ValueError(kind)
+        at = start + length
+        plain = kind in {b"OW", b"OB"} if tag == _PIXELS else at <= len(head)
+        if not last < tag <= _PIXELS or not plain or length == _UNDEFINED:
+            raise ValueError(tag)
+        yield tag, kind, start, length
+        last = tag
 
 
 @lru_cache(maxsize=4096)
@@ -109,6 +157,8 @@ def _value(kind: bytes, raw: bytes) -> Any:
     ValueError
         It is not what its type says.
     """
+    if kind not in _TEXTS and kind not in _NUMBERS:
+        raise ValueError(kind)
     if kind in _NUMBERS:
         code = _NUMBERS[kind]
         several = struct.unpack(f"<{len(raw) // struct.calcsize(code)}{code}", raw)
