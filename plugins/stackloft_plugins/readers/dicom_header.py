@@ -14,7 +14,7 @@ from stackloft.model.errors import InputError
 from stackloft_plugins.readers.dicom_file import ClampedFile, read_elements, safely
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_lookup import Lookup
-from stackloft_plugins.readers.dicom_plain import EXPLICIT_LITTLE, PlainHeader, plain_header
+from stackloft_plugins.readers.dicom_plain import PlainHeader, plain_header
 
 if TYPE_CHECKING:
     from pydicom import Dataset
@@ -49,9 +49,7 @@ def read_frames(path: Path, *, keep_identifiers: bool = False) -> tuple[Frame, .
         return (plain,)
     keywords = (*KEYWORDS, *PRIVATE) if keep_identifiers else KEYWORDS
     with safely(path, "its header"), ClampedFile(path) as stream:
-        data = read_elements(stream, keywords)
-        syntax = str(data.file_meta.get("TransferSyntaxUID", IMPLICIT_LITTLE))
-        return frames_of(data, path, syntax, keep_identifiers=keep_identifiers)
+        return frames_of(read_elements(stream, keywords), path, keep_identifiers=keep_identifiers)
 
 
 def _plain_frame(path: Path) -> Frame | None:
@@ -60,14 +58,14 @@ def _plain_frame(path: Path) -> Frame | None:
         header = plain_header(path, KEYWORDS)
         if header is None:
             return None
-        frames = frames_of(header, path, EXPLICIT_LITTLE)
+        frames = frames_of(header, path)
         return replace(frames[0], samples_at=header.samples()) if len(frames) == 1 else None
     except (InputError, OSError, TypeError, ValueError, AttributeError, OverflowError):
         return None
 
 
 def frames_of(
-    data: Dataset | PlainHeader, path: Path, syntax: str, *, keep_identifiers: bool = False
+    data: Dataset | PlainHeader, path: Path, *, keep_identifiers: bool = False
 ) -> tuple[Frame, ...]:
     """Return the frames that a file's header describes.
 
@@ -81,7 +79,7 @@ def frames_of(
     groups = data.get("PerFrameFunctionalGroupsSequence")
     if count > 1 and (groups is None or len(groups) != count):
         raise _lacking(path, "a position for each of its frames", "functional groups of all frames")
-    common = _common(data, path, syntax, keep_identifiers=keep_identifiers)
+    common = _common(data, path, keep_identifiers=keep_identifiers)
     if not groups:
         return (_placed(common, Lookup(data, ()), 0, path.name),)
     shared = tuple(data.get("SharedFunctionalGroupsSequence") or ())[:1]
@@ -91,7 +89,7 @@ def frames_of(
     )
 
 
-def _common(data: Dataset | PlainHeader, path: Path, syntax: str, *, keep_identifiers: bool) -> Frame:
+def _common(data: Dataset | PlainHeader, path: Path, *, keep_identifiers: bool) -> Frame:
     """Return what all frames of a file share; the place is filled in by `_placed`."""
     bits, signed = int(data.get("BitsStored")), bool(data.get("PixelRepresentation", 0))
     number = data.get("SeriesNumber")
@@ -118,7 +116,7 @@ def _common(data: Dataset | PlainHeader, path: Path, syntax: str, *, keep_identi
         padding=_padding(data),
         stored=(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1),
         lookup=bool(data.get("ModalityLUTSequence")),
-        syntax=syntax,
+        syntax=str(data.file_meta.get("TransferSyntaxUID", IMPLICIT_LITTLE)),
         localizer="LOCALIZER" in _words(data.get("ImageType")),
         private=tuple(kept),
     )

@@ -76,6 +76,11 @@ class PlainHeader:
         """Return an element's value as pydicom would give it, or the default where there is none."""
         return self.values.get(keyword, default)
 
+    @property
+    def file_meta(self) -> dict[str, str]:
+        """The file's own group, as far as it matters."""
+        return {"TransferSyntaxUID": EXPLICIT_LITTLE}
+
     def samples(self) -> PlainSamples | None:
         """Return where the samples of its one grey picture lie; None when they are not so simple."""
         allocated, stored = self.get("BitsAllocated"), self.get("BitsStored")
