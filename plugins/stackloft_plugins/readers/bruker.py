@@ -25,16 +25,23 @@ from stackloft.model.arrays import IntArray, frozen_floats, read_only
 from stackloft.model.errors import InputError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
-from stackloft_plugins.readers.dicom_series import PARALLEL
+from stackloft_plugins.readers.bruker_files import (
+    DATA,
+    VISU,
+    check_reconstruction,
+    describes_frames,
+    folder_of,
+    mapped,
+    reconstructions,
+)
 from stackloft_plugins.readers.jcamp import read_parameters
 from stackloft_plugins.readers.slab_notices import slab_notices
 from stackloft_plugins.readers.slice_geometry import place_slices
-from stackloft_plugins.readers.visu_frames import TYPES, VisuFrames, visu_frames
+from stackloft_plugins.readers.visu_frames import VisuFrames, visu_frames
+from stackloft_plugins.readers.visu_packages import packages_of, stored_frames
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
 
 _CONFIDENCE = 0.95
-_HEAD = 1 << 14
-DATA, VISU, RECO = "2dseq", "visu_pars", "reco"
 _COMPLEX = "COMPLEX_IMAGE"
 
 
@@ -68,8 +75,8 @@ class BrukerReader:
     def probe(self, path: Path) -> float:
         """Return 0.95 for a ``2dseq`` or ``visu_pars``, or a folder with one reconstruction; 0 otherwise."""
         try:
-            found = _reconstructions(path)
-            return _CONFIDENCE if len(found) == 1 and _describes_frames(found[0] / VISU) else 0.0
+            found = reconstructions(path)
+            return _CONFIDENCE if len(found) == 1 and describes_frames(found[0] / VISU) else 0.0
         except OSError:
             return 0.0
 
@@ -87,7 +94,7 @@ class BrukerReader:
             Parameters that are missing, impossible or contradict each other (each is named); numbers that
             are cut off; a missing or doubled slice; several frames at the same places.
         """
-        folder = _folder(path)
+        folder = folder_of(path)
         visu = read_parameters(folder / VISU)
         frames = visu_frames(visu)
         kind = visu.words("VisuCoreFrameType") if "VisuCoreFrameType" in visu else []
@@ -96,8 +103,8 @@ class BrukerReader:
                 "holds complex numbers", where=str(folder / VISU), found=_COMPLEX, expected="MAGNITUDE_IMAGE",
                 fix="reconstruct magnitude pictures",
             )  # fmt: skip
-        _check_reconstruction(folder, frames)
-        values = _mapped(folder / DATA, frames)
+        check_reconstruction(folder, frames)
+        values = mapped(folder / DATA, frames)
         own = {
             "positions": "VisuCorePosition along the normal",
             "pixel size": "VisuCoreExtent over VisuCoreSize",
@@ -131,10 +138,10 @@ class BrukerReader:
         repeat, notices = self._one_of(int(repeats.max()) + 1, "frames at each place", folder)
         chosen = np.flatnonzero(repeats == repeat)
         chosen = chosen[np.argsort(slices[chosen], kind="stable")]
-        packages = _packages(frames, chosen)
+        packages = packages_of(frames, chosen)
         package, more = self._package(packages, folder)
         mine = packages[package]
-        stored = _stored_frames(frames, chosen, mine, len(packages), folder)
+        stored = stored_frames(frames, chosen, mine, len(packages), folder)
         if len(mine) < 2:
             raise InputError(
                 "one slice makes no body", where=str(folder / DATA), expected="at least 2 slices"
@@ -220,104 +227,3 @@ def _decoder(values: Any, stored: IntArray, frames: VisuFrames, meant: IntArray)
         return _scaled(values[int(stored[number])], float(frames.slope[frame]), float(frames.offset[frame]))
 
     return decode
-
-
-def _packages(frames: VisuFrames, chosen: IntArray) -> list[IntArray]:
-    """Return the frames of each package: slices that follow each other and are parallel."""
-    turns = frames.axes[chosen, :2]
-    apart = np.abs(np.diff(turns, axis=0)).max(axis=(1, 2)) > PARALLEL
-    return list(np.split(chosen, np.flatnonzero(apart) + 1))
-
-
-def _stored_frames(
-    frames: VisuFrames, chosen: IntArray, mine: IntArray, packages: int, folder: Path
-) -> IntArray:
-    """Return where the frames that are described lie in the file: elsewhere when slices are stored backwards.
-
-    Raises
-    ------
-    InputError
-        Backwards, with several packages: programs differ over what that means.
-    """
-    if not frames.backwards:
-        return mine
-    if packages > 1:
-        raise InputError(
-            "several packages of slices are stored backwards, and it is not settled which frame is which",
-            where=str(folder / VISU),
-            found="VisuCoreDiskSliceOrder=disk_reverse_slice_order",
-            fix="export the scan as DICOM",
-        )
-    return chosen[::-1]
-
-
-def _check_reconstruction(folder: Path, frames: VisuFrames) -> None:
-    """Refuse a ``reco`` beside it that names another type or byte order."""
-    if not (folder / RECO).is_file():
-        return
-    reco = read_parameters(folder / RECO)
-    words = {"RECO_wordtype": TYPES, "RECO_byte_order": {"littleEndian": "<", "bigEndian": ">"}}
-    said = {name: choices.get(reco.word(name)) for name, choices in words.items() if name in reco}
-    kind = said.get("RECO_wordtype") or frames.dtype.str[1:]
-    order = said.get("RECO_byte_order") or frames.dtype.str[0]
-    single = frames.dtype.itemsize == 1
-    if kind != frames.dtype.str[1:] or (order != frames.dtype.str[0] and not single):
-        raise InputError(
-            "reco and visu_pars contradict each other",
-            where=str(folder),
-            found=f"{order}{kind} and {frames.dtype.str}",
-            fix="copy the whole reconstruction again",
-        )
-
-
-def _mapped(path: Path, frames: VisuFrames) -> Any:
-    """Return the file's numbers, (frames, …), mapped; nothing is read yet.
-
-    Raises
-    ------
-    InputError
-        The file has another size than ``visu_pars`` says.
-    """
-    expected = frames.count * int(np.prod(frames.shape, dtype=object)) * frames.dtype.itemsize
-    try:
-        size = path.stat().st_size
-        if size != expected:
-            raise InputError(
-                "has another size than visu_pars says",
-                where=str(path),
-                found=f"{size} bytes",
-                expected=f"{expected} bytes: {frames.count} frames of "
-                f"{' × '.join(map(str, frames.shape[::-1]))} {frames.dtype}",
-                fix="copy the file again",
-            )
-        return np.memmap(path, dtype=frames.dtype, mode="r", shape=(frames.count, *frames.shape))
-    except OSError as error:
-        raise InputError("cannot be opened", where=str(path), found=error.strerror) from error
-
-
-def _folder(path: Path) -> Path:
-    found = _reconstructions(path)
-    if len(found) == 1:
-        return found[0]
-    if not path.exists():
-        raise InputError("no such file or folder", where=str(path))
-    raise InputError(
-        f"holds {len(found)} reconstructions" if found else "holds no 2dseq with visu_pars",
-        where=str(path),
-        found=", ".join(folder.relative_to(path).as_posix() for folder in found[:8]),
-        fix="name the folder of one" if found else "give the folder pdata/N of a scan",
-    )
-
-
-def _describes_frames(path: Path) -> bool:
-    with path.open("rb") as stream:
-        head = stream.read(_HEAD)
-    return b"##" in head and b"##$VisuCore" in head
-
-
-def _reconstructions(path: Path) -> list[Path]:
-    """Return the folders with a ``2dseq`` and its ``visu_pars``: this one, or those in ``pdata``."""
-    if path.is_file():
-        path = path.parent if path.name in {DATA, VISU} else path
-    candidates = [path, *sorted((path / "pdata").glob("*"))] if path.is_dir() else []
-    return [folder for folder in candidates if (folder / DATA).is_file() and (folder / VISU).is_file()]
