@@ -80,6 +80,21 @@ def _csv_areas(path: Path) -> list[float]:
     ]
 
 
+def write_surface(folder: Path, slices: int) -> Path:
+    """Write a closed surface as text STL; `slices` makes it finer."""
+    angles = np.linspace(0, 2 * np.pi, 8 * slices, endpoint=False)
+    ring = np.column_stack([9 * np.cos(angles), 7 * np.sin(angles), 0.1 * np.sin(3 * angles)])
+    lines = ["solid spindle"]
+    for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        for corners in ((a, b, [1.0, 2.0, 11.5]), (b, a, [-1.0, 0.5, -12.5])):
+            lines += ["facet normal 0 0 0", "outer loop"]
+            lines += [f"vertex {x!r} {y!r} {z!r}" for x, y, z in (map(float, corner) for corner in corners)]
+            lines += ["endloop", "endfacet"]
+    path = folder / "body.stl"
+    path.write_text("\n".join([*lines, "endsolid spindle"]) + "\n", encoding="utf-8")
+    return path
+
+
 CASES: Mapping[str, Mapping[str, Any]] = {
     "reader.photos": {"write": write_pictures, "options": _GIVEN, "spacing_options": tuple(_GIVEN)},
     "reader.numpy": {"write": write_array, "options": _GIVEN, "spacing_options": tuple(_GIVEN)},
@@ -89,6 +104,10 @@ CASES: Mapping[str, Mapping[str, Any]] = {
         "expected_failures": {
             "refuses-truncated": "a table cut off between two rows is a table, and says nothing of the rest",
         },
+    },
+    "reader.surface": {
+        "write": write_surface,
+        "expected_failures": {"refuses-one-slice": "a surface has no slices"},
     },
     "writer.json": {"read": _json_figures, "expected": _figures},
     "writer.csv": {"read": _csv_areas, "expected": _areas},

@@ -8,6 +8,7 @@ from stackloft.model.bias import Bias
 _LOFTED = "corresponding points were joined wrongly, or an end lies elsewhere than was assumed"
 _SHAPES = "thin parts of neighbouring sections do not overlap, or an end lies elsewhere than was assumed"
 _LEVEL = "slices far apart make steps between them, and a level off the edge moves the surface"
+_TRIANGLES = "triangles are coarse for the body's roundness, or parts of the surface overlap"
 _FRUSTA = "frusta stop at the outermost sections, and their sides are too large between elongated ones"
 
 loft = Recipe(
@@ -55,6 +56,14 @@ crofton = Recipe(
     steps=("integrator.crofton",),
     summary="boundary crossings of lattice lines, directions weighted for the actual spacing (Legland et al. "
     "2007); low at sharp edges, high on noisy masks; the volume is the voxel count",
+)
+
+polyhedral = Recipe(
+    steps=("integrator.polyhedral",),
+    summary="a surface's triangles taken at their word, by signed sums; the default for STL, PLY and OBJ; "
+    "low where triangles are inscribed in a round body",
+    volume_bias=Bias(-1.5, 0.5, _TRIANGLES),
+    area_bias=Bias(-1.5, 0.5, _TRIANGLES),
 )
 
 isosurface = Recipe(

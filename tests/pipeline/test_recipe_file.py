@@ -95,5 +95,5 @@ def test_a_recipe_that_is_not_there(tmp_path):
 
 def test_a_hand_written_recipe_may_say_little(tmp_path):
     request = request_of_recipe(tomllib.loads("[options.loft]\npoints = 40"), tmp_path)
-    assert request.method == "loft"
+    assert request.method is None
     assert request.base == {"loft": {"points": 40}}

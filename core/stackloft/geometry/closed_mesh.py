@@ -10,11 +10,59 @@ r"""Volume and area of a closed triangle surface, and whether it is one.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeFaults:
+    """Edges that are not run equally often in both directions, by what is wrong with them."""
+
+    rims: IntArray
+    """(k, 2) vertex numbers: edges of one triangle alone, the rim of a hole."""
+    disagreeing: IntArray
+    """(k, 2): two triangles run them the same way, so one is turned over."""
+    crowded: IntArray
+    """(k, 2): three and more triangles that do not pair off; no surface has such an edge."""
+
+    @property
+    def count(self) -> int:
+        """How many there are; 0: closed and oriented."""
+        return len(self.rims) + len(self.disagreeing) + len(self.crowded)
+
+
+def edge_faults(faces: IntArray) -> EdgeFaults:
+    """Return the edges that keep a surface from being closed and oriented.
+
+    Parameters
+    ----------
+    faces : (t, 3) int array
+        Vertex numbers of each triangle, in order.
+
+    Examples
+    --------
+    >>> faults = edge_faults(np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3]]))
+    >>> faults.rims.tolist(), faults.count
+    ([[0, 2], [0, 3], [2, 3]], 3)
+    """
+    tail, head = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    kept = tail != head
+    tail, head = tail[kept], head[kept]
+    if not len(tail):
+        nothing = np.zeros((0, 2), dtype=np.int64)
+        return EdgeFaults(nothing, nothing, nothing)
+    low, high = np.minimum(tail, head), np.maximum(tail, head)
+    span = int(high.max()) + 1
+    edges, which, uses = np.unique(low * span + high, return_inverse=True, return_counts=True)
+    balance = np.bincount(which, np.where(tail < head, 1.0, -1.0))
+    pairs = np.column_stack([edges // span, edges % span])
+    off = balance != 0
+    return EdgeFaults(pairs[off & (uses == 1)], pairs[off & (uses == 2)], pairs[off & (uses > 2)])
 
 
 def unmatched_edges(faces: IntArray) -> int:
@@ -31,16 +79,7 @@ def unmatched_edges(faces: IntArray) -> int:
     >>> unmatched_edges(tetrahedron), unmatched_edges(tetrahedron[:3])
     (0, 3)
     """
-    tail, head = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    kept = tail != head
-    tail, head = tail[kept], head[kept]
-    if not len(tail):
-        return 0
-    low, high = np.minimum(tail, head), np.maximum(tail, head)
-    edge = low * (int(high.max()) + 1) + high
-    _, which = np.unique(edge, return_inverse=True)
-    balance = np.bincount(which, np.where(tail < head, 1.0, -1.0))
-    return int(np.count_nonzero(balance))
+    return edge_faults(faces).count
 
 
 def mesh_integrals(vertices: FloatArray, faces: IntArray) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from typing import Any
 from stackloft.model.measurement import Result
 from stackloft.pipeline.every_object import measure_objects as run
 from stackloft.pipeline.layers import Place, check_addresses, options_at
-from stackloft.pipeline.request import DEFAULT_METHOD, MeasureRequest
+from stackloft.pipeline.request import MeasureRequest
 from stackloft.pipeline.workbench import guarded
 from stackloft.registry import choose_reader, instantiate
 
@@ -54,7 +54,7 @@ def read(path: str | os.PathLike[str], *, reader: str | None = None, **options: 
 
 def measure(
     source: Any,
-    method: str = DEFAULT_METHOD,
+    method: str | None = None,
     *,
     reader: str | None = None,
     segmenter: str | None = None,
@@ -67,8 +67,8 @@ def measure(
     ----------
     source : path or product
         What is measured.
-    method : str
-        A recipe's name, several with commas, or ``all``.
+    method : str, optional
+        A recipe's name, several with commas, or ``all``; None: ``loft``, of a surface ``polyhedral``.
     reader, segmenter : str, optional
         Named when the choice should not be found from the source.
     settings : mapping, optional

@@ -10,9 +10,10 @@ from stackloft.model.bias import Bias
 from stackloft.model.errors import PluginError, StackloftError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import SliceStack
+from stackloft.model.tri_mesh import TriMesh
 from stackloft.pipeline.chain_check import check_chain
 from stackloft.pipeline.layers import Place, check_addresses, check_preset, options_at
-from stackloft.pipeline.request import ALL_METHODS, DEFAULT_METHOD, MeasureRequest
+from stackloft.pipeline.request import ALL_METHODS, DEFAULT_METHOD, SURFACE_METHOD, MeasureRequest
 from stackloft.registry import Loaded, catalogue, choose_reader, find, instantiate, load
 
 OWN = "stackloft"
@@ -76,8 +77,10 @@ def make_plan(request: MeasureRequest, product: Any = None) -> Plan:
     reader = None if product is not None else choose_reader(request.source, request.reader)
     kinds = (type(product),) if reader is None else tuple(reader.plugin.produces)
     segmenter = _choose_segmenter(request, kinds)
-    recipes = [_outline(name, kinds, segmenter, request.method) for name in method_names(request.method)]
-    if request.method == ALL_METHODS:
+    asked = default_method(kinds) if request.method is None else request.method
+    names = [name for name in method_names(asked) if asked != ALL_METHODS or _may_start(name, kinds)]
+    recipes = [_outline(name, kinds, segmenter, asked) for name in names]
+    if asked == ALL_METHODS:
         recipes.sort(key=lambda recipe: isinstance(recipe[1], StackloftError))
     shared = [Place(loaded) for loaded in (reader, segmenter) if loaded is not None]
     own = [place for _, places in recipes if not isinstance(places, StackloftError) for place in places]
@@ -91,6 +94,17 @@ def make_plan(request: MeasureRequest, product: Any = None) -> Plan:
         tuple(_method(name, places, request) for name, places in recipes),
         (*loaded_notices, *notices),
     )
+
+
+def default_method(kinds: tuple[type, ...]) -> str:
+    """Return the method that is taken when nobody names one and `kinds` may be read.
+
+    Examples
+    --------
+    >>> default_method((SliceStack,)), default_method((TriMesh,))
+    ('loft', 'polyhedral')
+    """
+    return SURFACE_METHOD if all(issubclass(kind, TriMesh) for kind in kinds) else DEFAULT_METHOD
 
 
 def method_names(method: str) -> tuple[str, ...]:
@@ -128,6 +142,19 @@ def _choose_segmenter(request: MeasureRequest, kinds: tuple[type, ...]) -> Loade
         found = ", ".join(names)
         raise PluginError("several segmenters fit these slices", found=found, fix=f"--segmenter {names[0]}")
     return fitting[0] if fitting else None
+
+
+def _may_start(name: str, kinds: tuple[type, ...]) -> bool:
+    """Return whether anybody would miss the method under ``all``: not one for surfaces when none is read."""
+    recipe = load(next(x for x in catalogue("recipe") if name in {x.name, x.qualified}))
+    if any(issubclass(kind, TriMesh) for kind in kinds) or not isinstance(recipe, Loaded):
+        return True
+    family, _, first = recipe.plugin.steps[0].partition(".")
+    try:
+        taken = find(family, first, prefer=recipe.listing.distribution).plugin.accepts
+    except StackloftError:
+        return True
+    return any(not issubclass(kind, TriMesh) for kind in taken)
 
 
 def _outline(

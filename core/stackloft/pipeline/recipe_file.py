@@ -23,7 +23,7 @@ from typing import Any, BinaryIO
 
 from stackloft.model.errors import InputError, UsageError
 from stackloft.pipeline.plan import Plan, Step
-from stackloft.pipeline.request import DEFAULT_METHOD, MeasureRequest
+from stackloft.pipeline.request import MeasureRequest
 from stackloft.registry import fields_of, nearest, plain
 from stackloft.registry.options_model import NONE
 
@@ -110,7 +110,7 @@ def request_of_recipe(recipe: Mapping[str, Any], source: Path, where: str = "rec
         source,
         reader=recipe.get("reader"),
         segmenter=recipe.get("segmenter"),
-        method=recipe.get("method", DEFAULT_METHOD),
+        method=recipe.get("method"),
         base=recipe.get("options", {}),
     )
 

@@ -10,6 +10,9 @@ from typing import Any
 DEFAULT_METHOD = "loft"
 """The method used when nobody names one, and the primary one of ``all``."""
 
+SURFACE_METHOD = "polyhedral"
+"""The method used when nobody names one and what is read is a surface, which has no sections."""
+
 ALL_METHODS = "all"
 
 
@@ -24,8 +27,8 @@ class MeasureRequest:
     --------
     >>> request = MeasureRequest(Path("apple"), shared={"pixel_size": "0.3mm"},
     ...                          settings={"segmenter": {"threshold": "isodata"}})
-    >>> request.method
-    'loft'
+    >>> request.shared["pixel_size"]
+    '0.3mm'
     """
 
     source: Path
@@ -34,8 +37,9 @@ class MeasureRequest:
     """Reader by name; None: the one whose probe knows the source."""
     segmenter: str | None = None
     """Segmenter by name; None: the one that fits what was read."""
-    method: str = DEFAULT_METHOD
-    """A recipe's name, several with commas (the first is the primary one), or ``all``."""
+    method: str | None = None
+    """A recipe's name, several with commas (the first is the primary one), or ``all``; None: ``loft``, or
+    ``polyhedral`` when what is read is a surface."""
     settings: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by ``family``, ``name`` or ``family.name`` (the more particular wins); text or typed values."""
     shared: Mapping[str, Any] = field(default_factory=dict)

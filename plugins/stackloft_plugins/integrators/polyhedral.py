@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from stackloft.geometry.closed_mesh import mesh_integrals, unmatched_edges
+from stackloft.geometry.closed_mesh import mesh_integrals
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
 from stackloft.model.notices import Notice
 from stackloft.model.tri_mesh import TriMesh
+from stackloft.model.tri_mesh_check import check_closed
 
 
 @dataclass(frozen=True)
@@ -42,16 +43,7 @@ class Polyhedral:
         InputError
             No triangle; an open surface; triangles oriented differently; a surface inside out.
         """
-        if not len(product.faces):
-            raise InputError("the surface has no triangle")
-        loose = unmatched_edges(product.faces)
-        if loose:
-            raise InputError(
-                "the surface is open, or its triangles do not agree on which side is out",
-                found=f"{loose} edges without their counterpart",
-                expected="every edge run once in each direction",
-                fix="repair the surface; a volume of an open one would mean nothing",
-            )
+        check_closed(product)
         volume, area = mesh_integrals(product.vertices, product.faces)
         if volume <= 0.0:
             raise InputError("the surface is inside out, or flat", found=f"volume {volume:g} mm³")
