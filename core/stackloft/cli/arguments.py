@@ -64,7 +64,11 @@ Height = Annotated[
 ]
 Object = Annotated[
     str | None,
-    typer.Option("--object", metavar="largest|all|N", help="Which body of a scan, by size or label."),
+    typer.Option(
+        "--object",
+        metavar="largest|all|N|seed:X,Y,Z",
+        help="Which body of a scan: by size or label, or the one at a point in patient mm.",
+    ),
 ]
 PixelSize = Annotated[
     str | None,

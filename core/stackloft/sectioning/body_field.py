@@ -46,12 +46,12 @@ class BodyField:
         field = section.values[inner] - level
         field = np.where(mine[window], field, -np.abs(field))
         if self.whole.fill_voids:
-            closed = _touching(self.voids.closed(index)[window], mine[window])
+            closed = touching(self.voids.closed(index)[window], mine[window])
             field = np.where(closed, np.maximum(np.abs(field), np.finfo(float).tiny), field)
         return replace(section, values=field + level, offset=_corner(window), local_levels=local)
 
 
-def _touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
+def touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
     """Return the voids that this body encloses, among those of all bodies."""
     _, pieces = cv2.connectedComponents(voids.astype(np.uint8), connectivity=8)
     beside = cv2.dilate(mine.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0

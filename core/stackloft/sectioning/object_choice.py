@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from stackloft.model.errors import UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
+from stackloft.sectioning.seed_point import SEED, body_at, seed_of
 
 if TYPE_CHECKING:
     from stackloft.sectioning.objects import BodyObject
@@ -31,7 +32,8 @@ def one_object(whole: Segmentation, wanted: str) -> Segmentation:
     whole : Segmentation
         Of a scan's slices; all of them are decoded once.
     wanted : str
-        ``largest``, a label of a label map, or a rank by size, from 1.
+        ``largest``, a label of a label map, a rank by size, from 1, or ``seed:X,Y,Z``: the body at
+        that point in patient millimetres.
 
     Raises
     ------
@@ -61,6 +63,8 @@ def one_object(whole: Segmentation, wanted: str) -> Segmentation:
     names = [_name(body, rank) for rank, body in enumerate(found, start=1)]
     if wanted == LARGEST:
         number = max(range(len(found)), key=lambda k: found[k].size)
+    elif wanted.startswith(SEED):
+        number = body_at([body.segmentation for body in found], seed_of(wanted))
     elif wanted in names:
         number = names.index(wanted)
     else:

@@ -23,10 +23,10 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
-from stackloft.sectioning.body_field import BodyField, cut_stack
+from stackloft.sectioning.body_field import BodyField, cut_stack, touching
 from stackloft.sectioning.contour_sink import decoded_ahead
 from stackloft.sectioning.linked_pieces import LinkedPieces, Pieces, pieces_of
-from stackloft.sectioning.voids import VoidFinder
+from stackloft.sectioning.voids import VoidFinder, void_notice
 
 CRUMB = 0.02
 """Objects below this fraction of the largest are not worth a word."""
@@ -101,7 +101,7 @@ def _linked(segmentation: Segmentation) -> tuple[LinkedPieces, VoidFinder]:
     for index, picture, section in decoded_ahead(segmentation):
         pieces, sizes, own = _slice_pieces(segmentation, picture, section)
         links.add(pieces, sizes * voxel[index], own)
-        if segmentation.fill_voids:
+        if not segmentation.labels:
             voids.add(pieces > 0)
     return links, voids
 
@@ -161,13 +161,26 @@ def _view(
     """Return the body of the pieces `own` alone, on the slices where it is."""
     present = _present(whole, links, own)
     first, last = present[0], present[-1]
-    filled = voids.notice(_voxel_volumes(whole.stack)) if whole.fill_voids else ()
+    inner = _void_volume(whole, links, own, voids)
+    told = void_notice(inner, float(links.sizes()[own].sum()), filled=whole.fill_voids)
     return Segmentation(
         cut_stack(whole.stack, first, last + 1),
         BodyField(whole, links, own, voids, first),
         binary=whole.binary,
-        notices=(*whole.notices, *notices, *filled),
+        notices=(*whole.notices, *notices, *told),
     )
+
+
+def _void_volume(whole: Segmentation, links: LinkedPieces, own: BoolArray, voids: VoidFinder) -> float:
+    """Return the volume of the voids that a body encloses, mm³."""
+    if whole.labels:
+        return 0.0
+    voxel, total = _voxel_volumes(whole.stack), 0.0
+    for k in range(len(links)):
+        if own[links.of_slice(k)].any() and voids.has_closed(k):
+            mine = np.concatenate([[False], own[links.of_slice(k)]])[links.pieces(k)]
+            total += float(voxel[k]) * float(np.count_nonzero(touching(voids.closed(k), mine)))
+    return total
 
 
 def _present(whole: Segmentation, links: LinkedPieces, own: BoolArray) -> list[int]:

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray, FloatArray
+from stackloft.model.arrays import BoolArray
 from stackloft.model.notices import Notice
 from stackloft.sectioning.linked_pieces import LinkedPieces, pieces_of
 
@@ -62,6 +62,23 @@ def _beside(reached: cv2.typing.MatLike, rest: NDArray[np.int32]) -> BoolArray:
     return np.isin(rest, touched[touched > 0])
 
 
+def void_notice(voids: float, solid: float, *, filled: bool) -> tuple[Notice, ...]:
+    """Return a notice of a body's voids, both in mm³, and of its porosity: their part of the whole.
+
+    Examples
+    --------
+    >>> void_notice(25.0, 75.0, filled=False)[0].message
+    'voids of 25 mm³ (porosity 25 %) are left out; --set segmenter.voids=fill counts them as body'
+    """
+    if not voids:
+        return ()
+    share = f"voids of {voids:.4g} mm³ (porosity {100 * voids / (voids + solid):.3g} %)"
+    if filled:
+        text = f"{share} are counted as body; --set segmenter.voids=keep leaves them out"
+        return (Notice("voids-filled", text),)
+    return (Notice("voids-kept", f"{share} are left out; --set segmenter.voids=fill counts them as body"),)
+
+
 class VoidFinder:
     """Takes the body's pixels slice by slice; then knows which background is closed in.
 
@@ -95,17 +112,9 @@ class VoidFinder:
         pieces = self._links.pieces(number)
         return np.asarray(np.concatenate([[False], self._pieces()[self._links.of_slice(number)]])[pieces])
 
-    def notice(self, voxel: FloatArray) -> tuple[Notice, ...]:
-        """Return a notice of the voids' volume; `voxel`: the volume of one pixel of each slice, mm³."""
-        sizes, closed = self._links.sizes(), self._pieces()
-        total = 0.0
-        for k, volume in enumerate(voxel):
-            own = self._links.of_slice(k)
-            total += float(volume) * float(sizes[own][closed[own]].sum())
-        if not total:
-            return ()
-        text = f"voids of {total:.4g} mm³ are counted as body; --set segmenter.voids=keep leaves them out"
-        return (Notice("voids-filled", text),)
+    def has_closed(self, number: int) -> bool:
+        """Return whether slice `number` shows any void."""
+        return bool(self._pieces()[self._links.of_slice(number)].any())
 
     def _pieces(self) -> BoolArray:
         """Return whether each piece of background belongs to a void."""

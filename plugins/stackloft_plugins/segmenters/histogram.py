@@ -65,7 +65,7 @@ class HistogramSegmenter:
     voids: str = option(
         "fill", "scans: whether voids that are closed on every side count as body", choices=("fill", "keep")
     )
-    object: str = option(LARGEST, "scans: which body, largest or its rank by size from 1")
+    object: str = option(LARGEST, "scans: which body: largest, its rank by size from 1, or seed:X,Y,Z")
     channel: str = option("luminance", "what grey is made of", choices=tuple(CHANNELS))
 
     def segment(self, stack: SliceStack) -> Segmentation:
