@@ -15,6 +15,11 @@ def main() -> None:
     # The matrices here are small: a second thread in them waits more than it works (user time × 2).
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
+        if "_STACKLOFT_COMPLETE" in os.environ:  # a shell asks what may come next
+            from stackloft.cli.completion.answer import answer  # noqa: PLC0415
+
+            answer(os.environ)
+            return
         from stackloft.cli.app import app  # noqa: PLC0415 - importing stackloft.cli imports no Typer
         from stackloft.cli.guard import Supervision  # noqa: PLC0415
 

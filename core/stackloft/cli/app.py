@@ -169,3 +169,19 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
 
 app.add_typer(study_commands)
 app.add_typer(plugin_commands, name="plugins")
+
+
+@app.command()
+@answering
+def completion(shell: a.Shell) -> None:
+    """Print the script that completes commands, flags, plug-ins and options in bash, zsh or fish.
+
+    bash: add  eval "$(stackloft completion bash)"  to ~/.bashrc
+
+    zsh: add  eval "$(stackloft completion zsh)"  to ~/.zshrc
+
+    fish: stackloft completion fish > ~/.config/fish/completions/stackloft.fish
+    """
+    from stackloft.cli.completion.scripts import show
+
+    show(shell)

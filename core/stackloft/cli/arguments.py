@@ -98,6 +98,7 @@ Settings = Annotated[
         help="Any option of a plug-in (see `stackloft plugins show`); may be repeated.",
     ),
 ]
+Shell = Annotated[str, typer.Argument(metavar="SHELL", help="bash, zsh or fish.", show_default=False)]
 PluginName = Annotated[str, typer.Argument(metavar="NAME", help="A name or family.name.", show_default=False)]
 RecipeFile = Annotated[
     Path | None,
