@@ -41,7 +41,7 @@ def main() -> None:
 
     def loft_and_integrate() -> None:
         patches = skin(closed_rows(sections.points, sections.corners, (end, end)))
-        solid_integrals(patches, (False, False), contours.affine)
+        solid_integrals(patches, (None, None), contours.affine)
 
     told, guessed = LoftReconstructor(ends="round:2"), LoftReconstructor()
     timed("18 × 33 points: loft and integrate", loft_and_integrate)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from stackloft.geometry.bezier_patch import bernstein, evaluate
 from stackloft.geometry.creases import find_creases
+from stackloft.geometry.joined_tubes import Tube, tessellate_tubes
 from stackloft.geometry.loft_rows import RowEnd, closed_rows
 from stackloft.geometry.patch_integrals import gauss_unit, solid_integrals
 from stackloft.geometry.skin import Rows, section_beziers, skin
-from stackloft.geometry.tessellation import tessellate_tube
 
 FACE = RowEnd(0.0, pole=False)
 COLUMNS = 24
@@ -66,7 +66,7 @@ def ball_error(sections):
     points = np.stack([ring(np.sqrt(900 - h * h), h, 96) for h in z])
     end = RowEnd(30.0 - z[-1], pole=True)
     volume, area = solid_integrals(
-        skin(closed_rows(points, smooth(points), (end, end))), (False, False), np.eye(4)
+        skin(closed_rows(points, smooth(points), (end, end))), (None, None), np.eye(4)
     )
     return abs(volume / (4 / 3 * np.pi * 27000) - 1), abs(area / (3600 * np.pi) - 1)
 
@@ -83,16 +83,16 @@ def test_rigid_motion_shear_mirror_and_scale(scale, seed):
     rng = np.random.default_rng(seed)
     points = tube([8, 10, 9, 6], [0, 4, 9, 12])
     patches = skin(closed_rows(points, smooth(points), (FACE, RowEnd(2.0, pole=True))))
-    volume, area = solid_integrals(patches, (True, False), np.eye(4))
+    volume, area = solid_integrals(patches, (1.0, None), np.eye(4))
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))  # a rotation or a reflection
     affine = np.eye(4)
     affine[:3, :3] = scale * turn
     affine[:3, 3] = rng.uniform(-500, 500, 3)
-    moved = solid_integrals(patches, (True, False), affine)
+    moved = solid_integrals(patches, (1.0, None), affine)
     assert moved == pytest.approx((scale**3 * volume, scale**2 * area), rel=1e-11)
     shear = np.eye(4)
     shear[0, 2] = 0.4
-    assert solid_integrals(patches, (True, False), shear)[0] == pytest.approx(volume, rel=1e-12)
+    assert solid_integrals(patches, (1.0, None), shear)[0] == pytest.approx(volume, rel=1e-12)
 
 
 def test_a_prism_is_exact():
@@ -105,7 +105,7 @@ def test_a_prism_is_exact():
     corners = np.zeros((3, 8), bool)
     corners[:, ::2] = True
     patches = skin(closed_rows(points, corners, (FACE, FACE)))
-    assert solid_integrals(patches, (True, True), np.eye(4)) == pytest.approx((16.0, 40.0), rel=1e-13)
+    assert solid_integrals(patches, (1.0, 1.0), np.eye(4)) == pytest.approx((16.0, 40.0), rel=1e-13)
 
 
 def test_a_cone_with_a_tip_is_exact_up_to_its_circle():
@@ -121,7 +121,7 @@ def test_a_cone_with_a_tip_is_exact_up_to_its_circle():
         (True, True),
         np.eye(4),
     )[0]
-    assert solid_integrals(patches, (True, False), np.eye(4))[0] == pytest.approx(base * 12 / 3, rel=1e-12)
+    assert solid_integrals(patches, (1.0, None), np.eye(4))[0] == pytest.approx(base * 12 / 3, rel=1e-12)
 
 
 def test_a_flat_end_beyond_continues_the_sides():
@@ -164,8 +164,9 @@ def test_triangles_are_closed_outward_and_near(tolerance, plane):
     points = tube([8, 10, 9, 6], [0, 4, 9, 12])
     ends = tuple(FACE if flat else RowEnd(2.0, pole=True) for flat in plane)
     patches = skin(closed_rows(points, smooth(points), ends))
-    vertices, faces = tessellate_tube(patches, plane, tolerance)
-    volume, area = solid_integrals(patches, plane, np.eye(4))
+    closed = tuple(1.0 if flat else None for flat in plane)
+    vertices, faces = tessellate_tubes([Tube(patches, closed)], [], tolerance)
+    volume, area = solid_integrals(patches, closed, np.eye(4))
     assert closed_edges(faces)
     assert abs(signed_volume(vertices, faces) - volume) < tolerance * area
     assert signed_volume(vertices, faces) > 0.0
@@ -184,7 +185,7 @@ def test_a_face_with_points_in_line_stays_closed():
     corners = np.zeros((2, 32), bool)
     corners[:, ::8] = True
     patches = skin(closed_rows(points, corners, (FACE, FACE)))
-    _, faces = tessellate_tube(patches, (True, True), 0.01)
+    _, faces = tessellate_tubes([Tube(patches, (1.0, 1.0))], [], 0.01)
     assert closed_edges(faces)
 
 

@@ -88,7 +88,7 @@ def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:
 
 
 def solid_integrals(
-    patches: FloatArray, plane_ends: tuple[bool, bool], affine: FloatArray, degree: int = 9
+    patches: FloatArray, faces: tuple[float | None, float | None], affine: FloatArray, degree: int = 9
 ) -> tuple[float, float]:
     """Return volume and area of a tube of patches with its plane ends.
 
@@ -96,8 +96,9 @@ def solid_integrals(
     ----------
     patches : (rows, columns, 4, 4, 3) array
         Bézier control points in stack millimetres.
-    plane_ends : pair of bool
-        Where a plane face closes the tube; elsewhere it ends in a pole.
+    faces : pair of float or None
+        What each end's plane face adds to the area: 1 all of it, 0 nothing (the surface goes on in other
+        tubes), -1 an opening in another tube's face; None: the tube ends in a pole.
     affine : (4, 4) array
         From stack to bench millimetres; a mirror or shear is allowed.
     degree : int
@@ -106,15 +107,15 @@ def solid_integrals(
     Returns
     -------
     volume : float, mm³
-        Signed: negative for an inward shell.
+        Of the tube closed by plane faces; negative for an inward shell.
     area : float, mm²
     """
     linear = affine[:3, :3]
     placed = patches if (linear == np.eye(3)).all() else patches @ linear.T
     origin = placed[:, :, 0, 0].mean(axis=(0, 1))
     volume, area = volume_and_area(placed, origin, degree)
-    for wanted, rim in zip(plane_ends, (placed[0, ::-1, 0, ::-1], placed[-1, :, -1]), strict=True):
-        if wanted:
+    for sign, rim in zip(faces, (placed[0, ::-1, 0, ::-1], placed[-1, :, -1]), strict=True):
+        if sign is not None:
             part = plane_face(rim, origin)
-            volume, area = volume + part[0], area + part[1]
+            volume, area = volume + part[0], area + sign * part[1]
     return (volume if np.linalg.det(linear) > 0.0 else -volume), area

@@ -6,10 +6,13 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
-from stackloft.model.lofted_solid import LoftedSolid, Shell
+from stackloft.model.lofted_solid import Joint, LoftedSolid, Shell, ShellEnd
 
 TOLERANCE = 1e-9
 """Largest gap between shared rims, as a fraction of the shell's size."""
+RIM_TOLERANCE = 0.02
+"""Largest distance between a shell's own points and the edges of its joint, as a fraction of its size: both
+go through the same curve, at other points."""
 
 
 def check_lofted_solid(solid: LoftedSolid) -> None:
@@ -18,13 +21,42 @@ def check_lofted_solid(solid: LoftedSolid) -> None:
     Raises
     ------
     InputError
-        No shell, points that are not finite, neighbouring patches that do not share their rim, or an end
-        that is neither a pole nor a plane rim.
+        No shell, points that are not finite, neighbouring patches that do not share their rim, an end that
+        is neither a pole nor a plane rim, or a joint whose edges do not close or leave the shells' rims.
     """
     if not solid.shells:
         raise InputError("the solid has no surface")
     for number, shell in enumerate(solid.shells, start=1):
         _check_shell(shell, f"shell {number}")
+    joined = [rim for joint in solid.joints for rim in joint.rims]
+    for number, shell in enumerate(solid.shells):
+        for at_last, end in zip((False, True), shell.ends, strict=True):
+            count = sum(rim.shell == number and rim.at_last is at_last for rim in joined)
+            if count != (end is ShellEnd.JOINT):
+                raise InputError(
+                    "the surface is open", where=f"shell {number + 1}", found=f"a rim in {count} joints"
+                )
+    for number, joint in enumerate(solid.joints, start=1):
+        _check_joint(joint, solid.shells, f"joint {number}")
+
+
+def _check_joint(joint: Joint, shells: tuple[Shell, ...], name: str) -> None:
+    """Raise unless every edge serves two rims and the rims follow their shells."""
+    uses = sorted(edge for rim in joint.rims for edge, _ in rim.edges)
+    if uses != sorted([*range(len(joint.edges))] * 2):
+        raise InputError("the surface is open", where=name, found="an edge that does not belong to two rims")
+    for rim in joint.rims:
+        patches = shells[rim.shell].patches
+        size = float(np.ptp(patches.reshape(-1, 3), axis=0).max())
+        runs = [joint.edges[edge][:: 1 if forward else -1] for edge, forward in rim.edges]
+        following = [*runs[1:], runs[0]]
+        for run, after in zip(runs, following, strict=True):
+            _check_gap(run[-1] - after[0], size, name)
+        points = patches[-1, :, 3, 0] if rim.at_last else patches[0, :, 0, 0]
+        polyline = np.concatenate(runs)
+        away = np.sqrt(((points[:, None] - polyline[None]) ** 2).sum(axis=-1).min(axis=1).max())
+        if away > RIM_TOLERANCE * size:
+            raise InputError("a rim leaves its joint", where=name, found=f"by {away:g} mm")
 
 
 def _check_shell(shell: Shell, name: str) -> None:
@@ -38,8 +70,8 @@ def _check_shell(shell: Shell, name: str) -> None:
         patches[:, :, :, 3] - np.roll(patches, -1, axis=1)[:, :, :, 0], size, f"{name}, along the loop"
     )
     _check_gap(patches[:-1, :, 3] - patches[1:, :, 0], size, f"{name}, across sections")
-    for rim, plane, which in zip((patches[0, :, 0], patches[-1, :, 3]), shell.plane_ends, _ENDS, strict=True):
-        flat = rim[..., 2] - rim[0, 0, 2] if plane else rim - rim[0, 0]
+    for rim, end, which in zip((patches[0, :, 0], patches[-1, :, 3]), shell.ends, _ENDS, strict=True):
+        flat = rim - rim[0, 0] if end is ShellEnd.POLE else rim[..., 2] - rim[0, 0, 2]
         _check_gap(flat, size, f"{name}, {which} end")
 
 

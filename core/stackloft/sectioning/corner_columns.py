@@ -30,7 +30,9 @@ class CornerChain:
         return float(np.mean(list(self.at.values()))) % 1.0
 
 
-def follow_corners(corners: list[FloatArray], count: int) -> list[CornerChain]:
+def follow_corners(
+    corners: list[FloatArray], count: int, kept: frozenset[int] = frozenset()
+) -> list[CornerChain]:
     """Return the corner chains of a stack in order round the loop.
 
     Parameters
@@ -40,6 +42,8 @@ def follow_corners(corners: list[FloatArray], count: int) -> list[CornerChain]:
     count : int
         Points per loop. At most half of them become corners, the longest chains first, and no two come
         closer on any section than a third of the even spacing.
+    kept : frozenset of int
+        Sections whose corners are never noise.
 
     Returns
     -------
@@ -52,8 +56,10 @@ def follow_corners(corners: list[FloatArray], count: int) -> list[CornerChain]:
     for section, marks in enumerate(corners):
         active = _extend(active, section, marks, chains)
     least = max(min(2, len(corners)), math.ceil(PERSISTENT * len(corners)))
-    long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least]
-    longest = sorted(long_enough, key=lambda chain: (-len(chain.at), chain.mean))[: count // 2]
+    long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least or kept & chain.keys()]
+    longest = sorted(long_enough, key=lambda chain: (not kept & chain.at.keys(), -len(chain.at), chain.mean))[
+        : count // 2
+    ]
     return _uncrossed(longest, len(corners), APART / count)
 
 

@@ -33,11 +33,12 @@ def dense_loops(contours: ContourStack, step: float) -> list[list[FloatArray]]:
     if not any(ready):
         return [[] for _ in ready]
     curves = ready_curves(contours)
-    polygons = iter([_polygon(curves, k, step) for k in range(len(curves))])
+    polygons = iter([curve_polygon(curves, k, step) for k in range(len(curves))])
     return [[next(polygons) for _ in loops] for loops in ready]
 
 
-def _polygon(curves: CurveStack, k: int, step: float) -> FloatArray:
+def curve_polygon(curves: CurveStack, k: int, step: float) -> FloatArray:
+    """Return curve k as a polygon of sides up to `step` mm, its own vertices among the points, (n, 2) mm."""
     knots = curves.knots[curves.first[k] : curves.first[k + 1] + 1]
     parts = max(1, math.ceil(curves.lengths[k] * float(np.diff(knots).max()) / step))
     fractions = (knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(parts) / parts)).ravel()

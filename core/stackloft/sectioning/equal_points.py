@@ -39,7 +39,7 @@ class EqualSections:
     notices: tuple[Notice, ...]
 
 
-def equal_points(contours: ContourStack, count: int) -> EqualSections:
+def equal_points(contours: ContourStack, count: int, kept: frozenset[int] = frozenset()) -> EqualSections:
     """Return `count` corresponding points on every section's one outer loop.
 
     Parameters
@@ -48,6 +48,8 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
         At least two sections, one outer loop each.
     count : int
         N, points per loop, corners among them.
+    kept : frozenset of int
+        Sections whose corners are points whatever the others have (a joint's edges meet there).
 
     Raises
     ------
@@ -65,7 +67,7 @@ def equal_points(contours: ContourStack, count: int) -> EqualSections:
     _check_fit(curves, ready, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
-    chains = follow_corners(seams.corners, count)
+    chains = follow_corners(seams.corners, count, kept)
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)

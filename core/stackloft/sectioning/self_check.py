@@ -7,6 +7,8 @@ differ is learned from the half-lattices, every other section left out.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -37,7 +39,7 @@ def check_against_areas(
         Their names, for the message.
     """
     between = patches[rows]
-    volume, _ = solid_integrals(between, (True, True), np.eye(4), degree=8)
+    volume, _ = solid_integrals(between, (1.0, 1.0), np.eye(4), degree=8)
     expected = _integral(z, areas)
     allowed = SLACK * expected + HALVES * _half_lattices_apart(z, areas)
     if np.isfinite(volume) and abs(volume - expected) <= allowed:
@@ -70,7 +72,47 @@ def _half_lattices_apart(z: FloatArray, areas: FloatArray) -> float:
 def _worst_interval(between: FloatArray, z: FloatArray, areas: FloatArray) -> int:
     """Return the interval in which loft and areas differ most."""
     lofted = np.array(
-        [solid_integrals(between[k : k + 1], (True, True), np.eye(4), degree=8)[0] for k in range(len(z) - 1)]
+        [solid_integrals(between[k : k + 1], (1.0, 1.0), np.eye(4), degree=8)[0] for k in range(len(z) - 1)]
     )
     straight = 0.5 * (areas[:-1] + areas[1:]) * np.diff(z)
     return int(np.argmax(np.abs(lofted - straight)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TubeVolume:
+    """A tube of a branched loft between the outermost sections."""
+
+    patches: FloatArray
+    """(rows, columns, 4, 4, 3) mm"""
+    sign: float
+    """-1 for a hole"""
+
+    def volume(self) -> float:
+        """Return the volume, mm³, ends closed by plane faces where they are no poles."""
+        return self.sign * solid_integrals(self.patches, (1.0, 1.0), np.eye(4), degree=8)[0]
+
+
+def check_tubes_against_areas(
+    tubes: list[TubeVolume], z: FloatArray, areas: FloatArray, names: tuple[str, ...]
+) -> None:
+    """Raise InputError when a branched loft and its sections' areas disagree on the volume.
+
+    Parameters
+    ----------
+    tubes : list of TubeVolume
+    z, areas : (m,) arrays
+        Positions, mm, and areas, mm², of the sections, all loops together.
+    names : tuple of str
+    """
+    volume = sum(tube.volume() for tube in tubes)
+    expected = _integral(z, areas)
+    allowed = SLACK * abs(expected) + HALVES * _half_lattices_apart(z, areas)
+    if np.isfinite(volume) and abs(volume - expected) <= allowed:
+        return
+    raise InputError(
+        "the loft and the sections' areas disagree: neighbouring sections differ too much to be joined",
+        where=f"{names[0]} to {names[-1]}",
+        found=f"{volume:.4g} mm³ by the loft between the outermost sections",
+        expected=f"{expected:.4g} ± {allowed:.2g} mm³ from their areas",
+        fix="check the order and alignment of the slices, cut thinner slices, or use --method cavalieri",
+    )

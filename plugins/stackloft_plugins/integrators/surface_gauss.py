@@ -37,7 +37,7 @@ class SurfaceGauss:
             The solid has no shell, is open, or is inside out.
         """
         check_lofted_solid(product)
-        parts = [solid_integrals(s.patches, s.plane_ends, product.affine) for s in product.shells]
+        parts = [solid_integrals(s.patches, s.face_signs, product.affine) for s in product.shells]
         volume = sum(part[0] for part in parts)
         if volume <= 0.0:
             raise InputError("the lofted surface is inside out", found=f"volume {volume:g} mm³")

@@ -15,12 +15,14 @@ from stackloft.model.arrays import BoolArray, FloatArray, read_only
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.ends import End, EndKind
 from stackloft.model.lengths import parse_length
-from stackloft.model.lofted_solid import LoftedSolid, Shell
+from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
 from stackloft.model.notices import Notice
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import check_against_areas
+from stackloft.sectioning.tube_plan import is_single
+from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
 
 OUTERMOST = 5
 """Sections lofted when the effect of a guessed end is worked out; those further in do not feel it."""
@@ -53,19 +55,21 @@ class LoftReconstructor:
         Parameters
         ----------
         product : ContourStack
-            At least two sections with one outer loop each.
+            At least two sections.
 
         Raises
         ------
         InputError
             The sections cannot be lofted, or ends and height contradict each other.
         """
+        if not is_single(product):
+            return loft_tubes(product, self.points, self._said(product), self._height(product))
         sections = equal_points(product, self.points)
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
         _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
-        shell = Shell(read_only(patches), (_is_plane(planned[0]), _is_plane(planned[1])))
+        shell = Shell(read_only(patches), (_shell_end(planned[0]), _shell_end(planned[1])))
         notices = (*sections.notices, *_guess_notices(reports))
         return LoftedSolid((shell,), reports, product.affine, notices)
 
@@ -86,6 +90,10 @@ def _stack_ends(contours: ContourStack, sections: EqualSections) -> StackEnds:
 
 def _is_plane(end: PlannedEnd) -> bool:
     return end.kind in {EndKind.FACE, EndKind.FLAT}
+
+
+def _shell_end(end: PlannedEnd) -> ShellEnd:
+    return ShellEnd.FACE if _is_plane(end) else ShellEnd.POLE
 
 
 def _row_end(end: PlannedEnd) -> RowEnd:
@@ -133,7 +141,9 @@ def _report(points: FloatArray, corners: BoolArray, end: PlannedEnd, contours: C
     figures = []
     for extreme in end.extremes:
         rows = closed_rows(points[outer], corners[outer], (_row_end(extreme), RowEnd(0.0, pole=False)))
-        figures.append(solid_integrals(skin(rows), (_is_plane(extreme), True), contours.affine, degree=5))
+        figures.append(
+            solid_integrals(skin(rows), (1.0 if _is_plane(extreme) else None, 1.0), contours.affine, degree=5)
+        )
     volumes, areas = zip(*figures, strict=True)
     return replace(
         report,

@@ -20,7 +20,7 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import ContourStack, Loop, Section
-from stackloft.model.lofted_solid import LoftedSolid, Shell
+from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.testing.conformance.voxel_ellipsoid import scan
@@ -69,7 +69,7 @@ def lofted_solid(fineness: int) -> LoftedSolid:
     patches[..., 0] = A * meridian[:, None, :, None, 0] * around[None, :, None, :, 0]
     patches[..., 1] = B * meridian[:, None, :, None, 0] * around[None, :, None, :, 1]
     patches[..., 2] = B * meridian[:, None, :, None, 1]
-    shell = Shell(frozen_floats(patches + CENTRE), (False, False))
+    shell = Shell(frozen_floats(patches + CENTRE), (ShellEnd.POLE, ShellEnd.POLE))
     return LoftedSolid((shell,), affine=frozen_floats(np.eye(4)))
 
 

@@ -1,0 +1,270 @@
+r"""Cut plane loops along chords, so that they become the loops of a neighbouring section.
+
+::
+
+      .----.  .----.        one loop, cut along p–q: two loops;
+     (      p       )       a ring, cut from its outline to its hole:
+      '----' q'----'        one loop that runs round both
+
+Loops keep the body on their left: outlines counter-clockwise, holes clockwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+from scipy.spatial import cKDTree
+
+from stackloft.geometry.polygon_distance import signed_distance
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+CANDIDATES = 100
+"""Vertices of a loop between which chords are tried."""
+SAMPLES = 9
+FEWEST = 2
+ASTRAY = 4.0
+"""What a chord costs, in lengths, where it runs through the neighbour's body or leaves its own."""
+MISLAID = 0.5
+"""What a length of outline costs that ends up with a farther part of the neighbour."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """One loop after cutting."""
+
+    points: FloatArray
+    """(k, 2) mm"""
+    pinned: IntArray
+    """(c,) vertices at which edges meet"""
+    edges: tuple[tuple[int, bool], ...]
+    """(edge, forward) from pinned vertex to pinned vertex, beginning at the first"""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BridgeCut:
+    """Loops before and after cutting, made of the same edges."""
+
+    edges: tuple[FloatArray, ...]
+    """(k, 2) mm: polylines, ends included"""
+    wholes: tuple[Part, ...]
+    parts: tuple[Part, ...]
+
+
+@dataclass(slots=True)
+class _Line:
+    """A loop while it is cut: where each vertex comes from, and which chord leaves it."""
+
+    points: FloatArray
+    source: IntArray
+    """(k, 2): loop and vertex that each vertex was"""
+    chord: IntArray
+    """(k,) 0: an edge of its own loop leaves the vertex; ±(c + 1): chord c, forward or backward"""
+
+
+def cut_bridges(
+    joined: list[FloatArray], parted: list[FloatArray], splits: int, merges: int
+) -> BridgeCut | None:
+    """Cut loops until they have the topology of the neighbour's.
+
+    Parameters
+    ----------
+    joined : list of (k, 2) arrays
+        The loops to cut, mm, body on the left.
+    parted : list of (k, 2) arrays
+        The loops of the neighbouring section that they should become.
+    splits, merges : int
+        How often a loop is to be cut in two, and how often two loops are to be made one.
+
+    Returns
+    -------
+    BridgeCut or None
+        None when no chord does it.
+    """
+    lines = [
+        _Line(p, np.column_stack([np.full(len(p), w), np.arange(len(p))]), np.zeros(len(p), dtype=np.int64))
+        for w, p in enumerate(joined)
+    ]
+    cost = _ChordCost(joined, parted)
+    chords: list[tuple[tuple[int, int], tuple[int, int]]] = []
+    for kind in ["merge"] * merges + ["split"] * splits:
+        found = cost.best_merge(lines) if kind == "merge" else cost.best_split(lines)
+        if found is None:
+            return None
+        a, i, b, j = found
+        chords.append((_source(lines[a], i), _source(lines[b], j)))
+        made = (
+            _split(lines[a], i, j, len(chords)) if a == b else [_merge(lines[a], i, lines[b], j, len(chords))]
+        )
+        lines = [line for k, line in enumerate(lines) if k not in {a, b}] + made
+    return _assembled(joined, lines, chords)
+
+
+def _source(line: _Line, vertex: int) -> tuple[int, int]:
+    return int(line.source[vertex, 0]), int(line.source[vertex, 1])
+
+
+def _split(line: _Line, i: int, j: int, chord: int) -> list[_Line]:
+    """Return the two loops on both sides of a chord from vertex i to vertex j."""
+    n = len(line.points)
+    made = []
+    for a, b, sign in ((i, j, -1), (j, i, 1)):
+        run = np.arange(a, (b if b > a else b + n) + 1) % n
+        leaving = line.chord[run].copy()
+        leaving[-1] = sign * chord
+        made.append(_Line(line.points[run], line.source[run], leaving))
+    return made
+
+
+def _merge(one: _Line, i: int, two: _Line, j: int, chord: int) -> _Line:
+    """Return the one loop that runs round both, and along the chord to and fro."""
+    first = (np.arange(len(one.points) + 1) + i) % len(one.points)
+    second = (np.arange(len(two.points) + 1) + j) % len(two.points)
+    leaving = np.concatenate([one.chord[first], two.chord[second]])
+    leaving[len(first) - 1] = chord
+    leaving[-1] = -chord
+    return _Line(
+        np.concatenate([one.points[first], two.points[second]]),
+        np.concatenate([one.source[first], two.source[second]]),
+        leaving,
+    )
+
+
+class _ChordCost:
+    """What chords cost."""
+
+    def __init__(self, joined: list[FloatArray], parted: list[FloatArray]) -> None:
+        every = np.concatenate([*joined, *parted])
+        low, high = every.min(axis=0), every.max(axis=0)
+        self._step = float((high - low).max()) / 128.0
+        x, y = (
+            np.arange(a - 2 * self._step, b + 3 * self._step, self._step)
+            for a, b in zip(low, high, strict=True)
+        )
+        self._origin = np.array([x[0], y[0]])
+        self._own = signed_distance(x, y, _dense(joined, self._step))
+        self._other = signed_distance(x, y, _dense(parted, self._step))
+        outlines = [p for p in parted if _area(p) > 0.0]
+        self._count = len(outlines)
+        if outlines:
+            self._labels = np.concatenate([np.full(len(p), k) for k, p in enumerate(outlines)])
+            self._tree = cKDTree(np.concatenate(outlines))
+
+    def _price(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Return the cost of chords between points, (n, 2) each."""
+        t = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        points = start[:, None] + t[:, None] * (end - start)[:, None]
+        at = np.moveaxis((points - self._origin) / self._step, -1, 0)[::-1]
+        through = map_coordinates(self._other, at, order=1, mode="nearest") > 0.0
+        beyond = map_coordinates(self._own, at, order=1, mode="nearest") < -0.25 * self._step
+        length = np.linalg.norm(end - start, axis=1)
+        return np.asarray(length * (1.0 + ASTRAY * (through.mean(axis=1) + beyond.mean(axis=1))))
+
+    def best_split(self, lines: list[_Line]) -> tuple[int, int, int, int] | None:
+        """Return (loop, vertex, loop, vertex) of the best chord that cuts a loop in two."""
+        best, choice = np.inf, None
+        for k, line in enumerate(lines):
+            found = self._split_of(line)
+            if found is not None and found[0] < best:
+                best, choice = found[0], (k, found[1], k, found[2])
+        return choice
+
+    def _split_of(self, line: _Line) -> tuple[float, int, int] | None:
+        chosen = _spread(line)
+        if len(chosen) < FEWEST or self._count < FEWEST:
+            return None
+        label = self._labels[self._tree.query(line.points)[1]]
+        side = np.linalg.norm(np.roll(line.points, -1, axis=0) - line.points, axis=1)
+        share = np.zeros((len(label) + 1, self._count))
+        np.add.at(share, (np.arange(len(label)) + 1, label), side)
+        share = np.cumsum(share, axis=0)
+        total = share[-1]
+        if (total > 0.0).sum() < 2:
+            return None
+        a, b = np.triu_indices(len(chosen), 1)
+        i, j = chosen[a], chosen[b]
+        inner = share[j] - share[i]
+        mislaid = np.minimum(inner, total - inner).sum(axis=1)
+        kinds = ((inner > 0.5 * total) & (total > 0.0)).sum(axis=1)
+        cost = self._price(line.points[i], line.points[j]) + MISLAID * mislaid
+        cost[(kinds == 0) | (kinds == (total > 0.0).sum())] = np.inf
+        best = int(np.argmin(cost))
+        return (float(cost[best]), int(i[best]), int(j[best])) if np.isfinite(cost[best]) else None
+
+    def best_merge(self, lines: list[_Line]) -> tuple[int, int, int, int] | None:
+        """Return the best chord between two loops of which one at least is a hole."""
+        best, choice = np.inf, None
+        for p, one in enumerate(lines):
+            for q, two in enumerate(lines[p + 1 :], start=p + 1):
+                if _area(one.points) > 0.0 and _area(two.points) > 0.0:
+                    continue
+                a, b = np.meshgrid(_spread(one), _spread(two), indexing="ij")
+                if not a.size:
+                    continue
+                i, j = a.ravel(), b.ravel()
+                cost = self._price(one.points[i], two.points[j])
+                k = int(np.argmin(cost))
+                if cost[k] < best:
+                    best, choice = float(cost[k]), (p, int(i[k]), q, int(j[k]))
+        return choice
+
+
+def _spread(line: _Line) -> IntArray:
+    """Return vertices to try, evenly spread, none of them an end of an earlier chord."""
+    free = np.flatnonzero((line.chord == 0) & (np.roll(line.chord, 1) == 0))
+    stride = max(1, len(free) // CANDIDATES)
+    return free[::stride]
+
+
+def _dense(loops: list[FloatArray], step: float) -> list[FloatArray]:
+    """Return polygons whose sides are no longer than a step."""
+    result = []
+    for points in loops:
+        closed = np.concatenate([points, points[:1]])
+        arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+        wanted = np.unique(np.concatenate([arc[:-1], np.arange(0.0, arc[-1], step)]))
+        result.append(np.column_stack([np.interp(wanted, arc, closed[:, k]) for k in (0, 1)]))
+    return result
+
+
+def _area(points: FloatArray) -> float:
+    x, y = (points - points[0]).T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def _assembled(
+    joined: list[FloatArray], lines: list[_Line], chords: list[tuple[tuple[int, int], tuple[int, int]]]
+) -> BridgeCut:
+    """Return edges, wholes and parts once all chords are drawn."""
+    pins = {end for chord in chords for end in chord}
+    edges: list[FloatArray] = []
+    number: dict[tuple[int, int], int] = {}  # pinned vertex that an arc leaves → edge
+    wholes = []
+    for w, points in enumerate(joined):
+        own = sorted(v for loop, v in pins if loop == w)
+        if not own:
+            own = [0]
+        first = len(edges)
+        for v, after in zip(own, [*own[1:], own[0] + len(points)], strict=True):
+            number[w, v] = len(edges)
+            edges.append(points[np.arange(v, after + 1) % len(points)])
+        uses = tuple((k, True) for k in range(first, len(edges)))
+        wholes.append(Part(points, np.array(own), uses))
+    arcs = len(edges)
+    edges += [np.array([joined[a][i], joined[b][j]]) for (a, i), (b, j) in chords]
+    parts = []
+    for line in lines:
+        at = [k for k in range(len(line.points)) if _source(line, k) in number]
+        uses = tuple(
+            (number[_source(line, k)], True)
+            if line.chord[k] == 0
+            else (arcs + abs(int(line.chord[k])) - 1, int(line.chord[k]) > 0)
+            for k in at
+        )
+        parts.append(Part(line.points, np.array(at), uses))
+    return BridgeCut(tuple(edges), tuple(wholes), tuple(parts))
