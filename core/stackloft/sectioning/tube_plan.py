@@ -6,14 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stackloft.geometry.curve_stack import fit_curves
 from stackloft.geometry.end_model import distance_to_end
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.ends import End, EndKind
 from stackloft.sectioning.dense_loops import curve_polygon
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
-from stackloft.sectioning.loop_curves import ready_loop
+from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 from stackloft.sectioning.loop_links import link_loops
 from stackloft.sectioning.roof import Thickness, half_thickness, roof_levels
 from stackloft.sectioning.section_regions import OUTSIDE, section_regions
@@ -106,16 +105,14 @@ def plan_tubes(contours: ContourStack, said: tuple[End, End], height: float | No
 
 def _levels(contours: ContourStack) -> tuple[list[Level], FloatArray]:
     """Return the sections as levels, each loop as given and as a polygon of its curve; and their areas."""
-    ready = [[ready_loop(loop, contours, s.name) for loop in s.loops] for s in contours.sections]
-    flat = [loop for loops in ready for loop in loops]
-    curves = fit_curves([loop.points for loop in flat], [loop.corners for loop in flat])
+    ready, curves = ready_loops(contours), ready_curves(contours)
     levels, k = [], 0
     areas = np.zeros(len(contours))
     for number, (section, loops) in enumerate(zip(contours.sections, ready, strict=True)):
         polygons = [
             curve_polygon(curves, k + i, float(curves.lengths[k + i]) / SIDES) for i in range(len(loops))
         ]
-        level = make_level(section.z, loops, polygons, section.name, number)
+        level = make_level(section.z, list(loops), polygons, section.name, number)
         levels.append(level)
         areas[number] = curves.areas[k : k + len(loops)] @ [
             -1.0 if is_hole(p) else 1.0 for p in level.polygons
