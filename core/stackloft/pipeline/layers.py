@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -117,4 +118,6 @@ def _taken(place: Place, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _spelt(name: str) -> str:
-    return name.replace("-", "_")
+    """Return the field that an option's name means: ``class``, a word of Python's own, is ``class_``."""
+    spelt = name.replace("-", "_")
+    return f"{spelt}_" if keyword.iskeyword(spelt) else spelt

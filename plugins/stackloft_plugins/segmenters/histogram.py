@@ -15,12 +15,14 @@ import numpy as np
 
 from stackloft.contracts.options import option
 from stackloft.model.errors import UsageError
+from stackloft.model.lengths import parse_length
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
 from stackloft.sectioning.object_choice import LARGEST, one_object
 from stackloft_plugins.segmenters.grey import CHANNELS
 from stackloft_plugins.segmenters.histogram_levels import METHODS
 from stackloft_plugins.segmenters.slab_field import SlabRules, slab_segmentation
+from stackloft_plugins.segmenters.slab_level import SAMPLED
 from stackloft_plugins.segmenters.slice_field import LevelRules, mask_field, slice_field
 
 
@@ -62,6 +64,24 @@ class HistogramSegmenter:
     window: tuple[float, float] | None = option(
         None, "scans: least and greatest grey level (HU) of the body; given, no threshold counts"
     )
+    classes: int = option(
+        2, "scans: into how many classes grey levels are told (Otsu); see class", ge=2, le=4
+    )
+    class_: int | None = option(None, "scans: which class is the body, from 1, the darkest", ge=1, le=4)
+    sample: int = option(
+        SAMPLED, "scans: slices that the level is found from, evenly from first to last", ge=2
+    )
+    bias_field: str = option(
+        "keep",
+        "scans: whether brightness that varies slowly is evened out first (MR)",
+        choices=("keep", "n4"),
+    )
+    holder: str = option(
+        "keep",
+        "scans: whether a table or holder, the same on all slices, is taken out",
+        choices=("keep", "remove"),
+    )
+    holder_thickness: float | str = option(30.0, "scans: what is thicker is no holder", unit="mm", gt=0)
     voids: str = option(
         "fill", "scans: whether voids that are closed on every side count as body", choices=("fill", "keep")
     )
@@ -82,9 +102,7 @@ class HistogramSegmenter:
         if self.method == "manual" and self.threshold is None:
             raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
         if stack.kind is SectionKind.SLAB and self.scope != "slice":
-            fill = self.voids == "fill"
-            rules = SlabRules(self.method, self.threshold, self.window, self.channel, fill)
-            return one_object(slab_segmentation(stack, rules), self.object)
+            return one_object(slab_segmentation(stack, self._slab_rules()), self.object)
         if self.object != LARGEST:
             raise UsageError(
                 "photographs show one body", where="--object", found=self.object, expected=LARGEST
@@ -97,6 +115,21 @@ class HistogramSegmenter:
             return self._field(stack, number, picture, threshold)
 
         return Segmentation(stack, field_of)
+
+    def _slab_rules(self) -> SlabRules:
+        thickness = parse_length(self.holder_thickness, "--set segmenter.holder_thickness")
+        return SlabRules(
+            method=self.method,
+            threshold=self.threshold,
+            window=self.window,
+            channel=self.channel,
+            fill_voids=self.voids == "fill",
+            classes=self.classes,
+            chosen_class=self.class_,
+            sample=self.sample,
+            even_out=self.bias_field == "n4",
+            holder=thickness if self.holder == "remove" else None,
+        )
 
     def _median_threshold(self, stack: SliceStack) -> float:
         levels = [self._field(stack, k, stack.decode(k), None).threshold for k in range(len(stack))]

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from stackloft.model.arrays import read_only
+from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft_plugins.segmenters.grey import grey_levels
-from stackloft_plugins.segmenters.slab_level import slab_level
+from stackloft_plugins.segmenters.holder import without_holder
+from stackloft_plugins.segmenters.n4_bias import bias_corrected
+from stackloft_plugins.segmenters.slab_classes import class_levels, class_window
+from stackloft_plugins.segmenters.slab_level import SAMPLED, slab_level
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 
@@ -27,6 +31,16 @@ class SlabRules:
     """Grey levels (HU) from … to … of the body; given, no threshold counts."""
     channel: str = "luminance"
     fill_voids: bool = True
+    classes: int = 2
+    """Into how many classes the grey levels are told, where `chosen_class` is given or there are several."""
+    chosen_class: int | None = None
+    """From 1, the darkest."""
+    sample: int = SAMPLED
+    """Slices that the level is found from."""
+    even_out: bool = False
+    """Whether slowly varying brightness is divided out (N4)."""
+    holder: float | None = None
+    """mm: a holder no thicker than this is taken out; None: it is left where it is."""
 
 
 def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
@@ -47,14 +61,40 @@ def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
     >>> slab_segmentation(stack, SlabRules()).field_of(0, scan).threshold
     -480.0
     """
+    if rules.even_out:
+        stack = bias_corrected(stack, rules.channel)
+    if rules.holder is not None:
+        rough = slab_level(stack, "otsu", rules.channel, stack.hints.background, rules.sample)
+        stack = without_holder(stack, rules.channel, rough, rules.holder)
+    field, told, notices = _field(stack, rules)
+    stack = replace(stack, provenance={**stack.provenance, "grey level": told})
+    return Segmentation(stack, _Masked(stack, field), notices=notices, fill_voids=rules.fill_voids)
+
+
+def _field(stack: SliceStack, rules: SlabRules) -> tuple[_Level | _Window, str, tuple[Notice, ...]]:
+    """Return the field of a picture, how its level was found, and what is to be told of that."""
+    from_sample = f"from {min(rules.sample, len(stack))} of {len(stack)} slices"
     if rules.window is not None:
-        low, high = rules.window
-        field = _Window(0.5 * (low + high), 0.5 * (high - low), rules.channel)
-        return Segmentation(stack, _Masked(stack, field), fill_voids=rules.fill_voids)
-    found = slab_level(stack, rules.method, rules.channel, stack.hints.background)
+        return _between(*rules.window, rules.channel), "window as given", ()
+    if rules.classes > 2 or rules.chosen_class is not None:
+        levels = class_levels(stack, rules.channel, rules.classes, rules.sample)
+        low, high = class_window(levels, rules.chosen_class)
+        told = f"class {rules.chosen_class} of {rules.classes}, {low:.4g} to {high:.4g}, {from_sample}"
+        return _between(low, high, rules.channel), told, ()
+    found = slab_level(stack, rules.method, rules.channel, stack.hints.background, rules.sample)
+    given = rules.threshold is not None
     level = found.level if rules.threshold is None else rules.threshold
-    signed = _Level(level, 1.0 if found.body_above else -1.0, rules.channel)
-    return Segmentation(stack, _Masked(stack, signed), notices=found.notices, fill_voids=rules.fill_voids)
+    told = f"{level:.5g}, as given" if given else f"{level:.5g}, {rules.method} {from_sample}"
+    return _Level(level, 1.0 if found.body_above else -1.0, rules.channel), told, found.notices
+
+
+def _between(low: float, high: float, channel: str) -> _Level | _Window:
+    """Return the field of a body between two grey levels, of which one may be open."""
+    if high == np.inf:
+        return _Level(low, 1.0, channel)
+    if low == -np.inf:
+        return _Level(high, -1.0, channel)
+    return _Window(0.5 * (low + high), 0.5 * (high - low), channel)
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,7 +40,9 @@ class SlabLevel:
     notices: tuple[Notice, ...] = ()
 
 
-def slab_level(stack: SliceStack, method: str, channel: str, background: str | None) -> SlabLevel:
+def slab_level(
+    stack: SliceStack, method: str, channel: str, background: str | None, sampled: int = SAMPLED
+) -> SlabLevel:
     """Return the level for all slices.
 
     Parameters
@@ -52,22 +54,37 @@ def slab_level(stack: SliceStack, method: str, channel: str, background: str | N
         What grey is made of.
     background : str or None
         ``light`` or ``dark``; None: found from the frame of the pictures.
+    sampled : int
+        How many slices are looked at, evenly from the first to the last.
 
     Raises
     ------
     InputError
         The scan is blank, or shows no boundary.
     """
-    numbers = np.unique(np.linspace(0, len(stack) - 1, SAMPLED).astype(int))
-    sample = [grey_levels(stack.decode(int(k)), channel) for k in numbers]
+    sample = _sample(stack, channel, sampled)
     where = f"{stack.names[0]} … {stack.names[-1]}"
-    pooled = np.concatenate([grey[::2, ::2].ravel() for grey in sample])
+    pooled = _pooled(sample)
     first = histogram_level(pooled, "otsu" if method == "half-way" else method, where)
-    frames = np.concatenate([_frame(grey) for grey in sample])
+    frames = np.concatenate([frame_of(grey) for grey in sample])
     above = background == "dark" or (background is None and float(np.mean(frames < first)) > 0.5)
     if method != "half-way":
         return SlabLevel(first, above)
     return _half_way(sample, first, above=above, where=where)
+
+
+def pooled_sample(stack: SliceStack, channel: str, sampled: int) -> Grey:
+    """Return the grey levels of every fourth pixel of a sample of slices, (n)."""
+    return _pooled(_sample(stack, channel, sampled))
+
+
+def _sample(stack: SliceStack, channel: str, sampled: int) -> list[Grey]:
+    numbers = np.unique(np.linspace(0, len(stack) - 1, sampled).astype(int))
+    return [grey_levels(stack.decode(int(k)), channel) for k in numbers]
+
+
+def _pooled(sample: list[Grey]) -> Grey:
+    return np.concatenate([grey[::2, ::2].ravel() for grey in sample])
 
 
 def _half_way(sample: list[Grey], level: float, *, above: bool, where: str) -> SlabLevel:
@@ -107,5 +124,6 @@ def _distance(mask: cv2.typing.MatLike) -> Grey:
     return np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, 3), dtype=np.float32)
 
 
-def _frame(grey: Grey) -> Grey:
+def frame_of(grey: Grey) -> Grey:
+    """Return the outermost pixels, taken for background."""
     return np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
