@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from stackloft.model.measurement import Result
+from stackloft_plugins import conformance_scans as scans
 
 _GIVEN = {"pixel_size": "0.3mm", "thickness": "2.5mm"}
 
@@ -51,6 +52,13 @@ def _table(folder: Path, slices: int, header: str) -> Path:
     path = folder / "body.csv"
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
     return path
+
+
+def in_colour(picture: Any) -> Any:
+    """Return the kit's grey levels (60 body, 200 plate) as red flesh on a plate almost as bright."""
+    body = np.clip((200.0 - picture) / 140.0, -0.1, 1.1)[..., None]
+    colours = np.array([200.0, 198.0, 196.0]) + body * np.array([-25.0, -105.0, -100.0])
+    return colours.round().clip(0, 255).astype(np.uint8)
 
 
 def _disc(k: int) -> Any:
@@ -97,7 +105,34 @@ def write_surface(folder: Path, slices: int) -> Path:
 
 CASES: Mapping[str, Mapping[str, Any]] = {
     "reader.photos": {"write": write_pictures, "options": _GIVEN, "spacing_options": tuple(_GIVEN)},
-    "reader.numpy": {"write": write_array, "options": _GIVEN, "spacing_options": tuple(_GIVEN)},
+    "reader.numpy": {
+        "write": write_array,
+        "options": _GIVEN,
+        "spacing_options": tuple(_GIVEN),
+        "write_told": scans.write_npz_told,
+    },
+    "reader.dicom": {
+        "write": scans.write_dicom_folder,
+        "without_spacing": scans.write_dicom_bare,
+        "write_told": scans.write_dicom_told,
+    },
+    "reader.bruker": {
+        "write": scans.write_bruker_folder,
+        "without_spacing": scans.write_bruker_bare,
+        "write_told": scans.write_bruker_told,
+    },
+    "reader.dicom-seg": {"write": scans.write_segments},
+    "reader.rtstruct": {"write": scans.write_structures},
+    "reader.itk": {
+        "write": scans.write_nrrd,
+        "without_spacing": scans.write_nrrd_bare,
+        "write_told": scans.write_nrrd_told,
+    },
+    "reader.tiff": {
+        "write": scans.write_tiff_stack,
+        "without_spacing": scans.write_tiff_bare,
+        "write_told": scans.write_tiff_told,
+    },
     "reader.contours": {
         "write": write_rings,
         "without_spacing": write_rings_without_positions,
@@ -108,6 +143,12 @@ CASES: Mapping[str, Mapping[str, Any]] = {
     "reader.surface": {
         "write": write_surface,
         "expected_failures": {"refuses-one-slice": "a surface has no slices"},
+    },
+    "segmenter.colour": {
+        "change": in_colour,
+        "expected_failures": dict.fromkeys(
+            ("grey-scale", "grey-depth"), "it tells the body by its colours, and the kit takes them away"
+        ),
     },
     "writer.json": {"read": _json_figures, "expected": _figures},
     "writer.csv": {"read": _csv_areas, "expected": _areas},

@@ -50,7 +50,5 @@ def test_what_cannot_be_checked_is_one_line(stackloft, name, status, words):
 @pytest.mark.prove
 @pytest.mark.parametrize("listing", catalogue(), ids=lambda listing: listing.key)
 def test_every_built_in_that_the_kit_knows_how_to_feed_holds(listing):
-    if listing.family == "reader" and listing.name in {"dicom", "itk", "tiff"}:
-        pytest.skip("its files are written by the phantoms: tests/conformance/test_scan_readers.py")
     for check in checks_of(listing.key):
         check()

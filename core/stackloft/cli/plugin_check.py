@@ -13,7 +13,7 @@ from stackloft.cli.screen import console
 from stackloft.model.errors import PluginError, UsageError
 from stackloft.registry.child import ask_child
 from stackloft.registry.scan import catalogue
-from stackloft.testing.conformance.check import Finding, findings
+from stackloft.testing.conformance.check import NOT_HELD, Finding, findings
 from stackloft.testing.conformance.suites import checks_of
 
 LONGEST = 1800.0
@@ -78,10 +78,18 @@ def _subject(name: str) -> str:
     return keys[0]
 
 
+def _outcome(item: Finding) -> str:
+    if not item.passed:
+        return "FAILS"
+    if item.reason.startswith(NOT_HELD):
+        return "not posed"
+    return "expected failure" if item.reason else "holds"
+
+
 def _print(subject: str, found: list[Finding]) -> None:
     table = Table("check", "outcome", "reason", box=None, padding=(0, 2, 0, 0))
     for item in found:
-        outcome = ("expected failure" if item.reason else "holds") if item.passed else "FAILS"
+        outcome = _outcome(item)
         table.add_row(*map(Text, (item.check, outcome, item.reason)), style="" if item.passed else "red")
     console().print(table)
     broken = sum(not item.passed for item in found)

@@ -31,3 +31,14 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
     view = array.view()
     view.setflags(write=False)
     return view
+
+
+def native(values: NDArray[Any]) -> NDArray[Any]:
+    """Return `values` in this machine's byte order, which OpenCV needs; itself when it is in it.
+
+    Examples
+    --------
+    >>> native(np.array([258], dtype=">u2")).dtype.isnative
+    True
+    """
+    return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import read_only
+from stackloft.model.arrays import native, read_only
 from stackloft.model.errors import InputError
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.readers.dicom_codestream import RLE, check_codestream
@@ -41,7 +41,7 @@ def decode_frame(frame: Frame) -> Picture:
         )
     if frame.samples > 1:
         return read_only(stored)
-    grey = without_padding(stored, frame.padding)
+    grey = without_padding(native(stored), frame.padding)
     if frame.lookup and data is not None:
         return read_only(_looked_up(grey, data, frame))
     if frame.inverted and not frame.rescaled:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from stackloft.contracts.stack_file import load_stack_file
-from stackloft.model.arrays import FloatArray, IntArray, frozen_floats
+from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, native
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
@@ -109,7 +109,7 @@ class _Decoder:
         self._order = tuple(int(k) for k in order)
 
     def __call__(self, number: int) -> Picture:
-        return self._picture(self._order[number])
+        return native(self._picture(self._order[number]))
 
 
 def _slabs(z: FloatArray) -> FloatArray:

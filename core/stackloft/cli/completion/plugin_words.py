@@ -32,8 +32,8 @@ def settings(current: str) -> tuple[Candidate, ...]:
 
     Examples
     --------
-    >>> [found.word for found in settings("segmenter.chan")]
-    ['segmenter.channel=']
+    >>> [found.word for found in settings("integrator.cavalieri.")]
+    ['integrator.cavalieri.rule=']
     """
     address, equals, _ = current.partition("=")
     key, dot, option = address.rpartition(".")

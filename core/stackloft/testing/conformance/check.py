@@ -9,9 +9,15 @@ from typing import Any
 from stackloft.model.errors import StackloftError, UsageError
 from stackloft.registry.find import nearest
 
+NOT_HELD = "the format cannot hold "
+
 
 class NonconformingError(AssertionError):
     """A plug-in breaks its contract; the message says how."""
+
+
+class NotHeldError(Exception):
+    """A format cannot hold what a check is about; the message says what."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +27,8 @@ class Finding:
     check: str
     passed: bool
     reason: str
-    """Why it failed, or for what reason failing was expected; empty when it simply passed."""
+    """Why it failed, for what reason failing was expected, or what the format cannot hold (after
+    `NOT_HELD`); empty when it simply passed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +59,10 @@ class Check:
 
     def finding(self) -> Finding:
         """Run the check and return what it found; raises nothing."""
-        reason = self._failure()
+        try:
+            reason = self._failure()
+        except NotHeldError as error:
+            return Finding(self.name, True, f"{NOT_HELD}{error}")
         if self.expected_failure is None:
             return Finding(self.name, reason is None, reason or "")
         if reason is None:
@@ -64,6 +74,8 @@ class Check:
             self.run()
         except NonconformingError as error:
             return str(error)
+        except NotHeldError:
+            raise
         except Exception as error:  # noqa: BLE001 - whatever a plug-in raises is its failure
             return f"{type(error).__name__}: {error}"
         return None

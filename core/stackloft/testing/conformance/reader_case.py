@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from stackloft.registry.options_model import validate
+from stackloft.testing.conformance.told_volume import ToldVolume
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +30,10 @@ class ReaderCase:
     without_spacing: Callable[[Path, int], Path] | None = None
     """As `write`, but the source does not say its spacing; for formats that usually do."""
     slices: int = 5
+    write_told: Callable[[Path, ToldVolume], Path] | None = None
+    """``write_told(folder, volume)`` writes a volume that the kit makes up and returns what is to be read;
+    it raises NotImplementedError, with what it is, on what the format cannot hold. None: for formats that do
+    not say where their slices lie, such as photographs."""
 
     def make(self, **changes: Any) -> Any:
         """Return the reader with its options; a change to None leaves that option out."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from stackloft.testing.conformance import probe_checks, read_checks, refusal_checks
+from stackloft.testing.conformance import probe_checks, read_checks, refusal_checks, told_checks
 from stackloft.testing.conformance.check import Check, suite
 from stackloft.testing.conformance.option_checks import check_options, check_shape
 from stackloft.testing.conformance.reader_case import ReaderCase
@@ -40,7 +40,7 @@ CHECKS = {
 
 
 def reader_checks(case: ReaderCase, expected_failures: Mapping[str, str] | None = None) -> list[Check]:
-    """Return the checks of one reader.
+    """Return the checks of one reader; those against a known volume when the case can write one.
 
     Parameters
     ----------
@@ -49,4 +49,5 @@ def reader_checks(case: ReaderCase, expected_failures: Mapping[str, str] | None 
     expected_failures : mapping, optional
         Reasons by check for those that this reader may break; it must then really break them.
     """
-    return suite(CHECKS, case, expected_failures or {})
+    told = told_checks.CHECKS if case.write_told is not None else {}
+    return suite({**CHECKS, **told}, case, expected_failures or {})

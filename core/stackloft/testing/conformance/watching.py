@@ -22,6 +22,8 @@ _ACTIONS = (
     *("socket.connect", "socket.getaddrinfo", "socket.bind", "urllib.Request", "ftplib.connect"),
     *("smtplib.connect", "tempfile.mkstemp", "tempfile.mkdtemp"),
 )
+_BY_IMPORTS = frozenset({"LD_LIBRARY_PATH", "GDCM_RESOURCES_PATH"})
+"""What the mere import of OpenCV and of gdcm sets."""
 
 
 @dataclass(slots=True)
@@ -77,7 +79,7 @@ def _state() -> dict[str, Any]:
     """Return global state that a plug-in has no business changing."""
     return {
         "the working directory": os.getcwd(),  # noqa: PTH109 - the bare text is compared
-        "the environment": dict(os.environ),
+        "the environment": {name: value for name, value in os.environ.items() if name not in _BY_IMPORTS},
         "the import path": tuple(sys.path),
         "numpy's error handling": np.geterr(),
         "numpy's global random state": np.random.get_state()[1].tobytes(),  # type: ignore[index]  # noqa: NPY002
