@@ -232,6 +232,13 @@ def _dense(loops: list[FloatArray], step: float) -> list[FloatArray]:
     return result
 
 
+def _chord(start: FloatArray, end: FloatArray, loop: FloatArray) -> FloatArray:
+    """Return a chord with points as far apart as the loop's."""
+    side = float(np.linalg.norm(np.diff(loop, axis=0), axis=1).mean())
+    parts = max(1, round(float(np.linalg.norm(end - start)) / side))
+    return np.asarray(start + (np.arange(parts + 1) / parts)[:, None] * (end - start))
+
+
 def _area(points: FloatArray) -> float:
     x, y = (points - points[0]).T
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
@@ -256,7 +263,7 @@ def _assembled(
         uses = tuple((k, True) for k in range(first, len(edges)))
         wholes.append(Part(points, np.array(own), uses))
     arcs = len(edges)
-    edges += [np.array([joined[a][i], joined[b][j]]) for (a, i), (b, j) in chords]
+    edges += [_chord(joined[a][i], joined[b][j], joined[a]) for (a, i), (b, j) in chords]
     parts = []
     for line in lines:
         at = [k for k in range(len(line.points)) if _source(line, k) in number]

@@ -79,7 +79,7 @@ def tessellate_tubes(
     rims = _joint_rims(surface, joints)
     plane: list[tuple[float, IntArray]] = []  # sign, ring as seen from outside
     for number, tube in enumerate(tubes):
-        grid = ring_grid(tube.patches, tolerance)
+        grid = ring_grid(tube.patches, tolerance, rings=4)
         first = 0 if _kept(tube.faces[0]) else 1
         last = len(grid) - (0 if _kept(tube.faces[1]) else 1)
         index = surface.add(grid[first:last].reshape(-1, 3)).reshape(-1, grid.shape[1])

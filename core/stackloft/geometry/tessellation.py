@@ -21,7 +21,7 @@ FINEST = 64
 """Most subdivisions of one patch in one direction."""
 
 
-def ring_grid(patches: FloatArray, tolerance: float) -> FloatArray:
+def ring_grid(patches: FloatArray, tolerance: float, rings: int = 2) -> FloatArray:
     """Return rings of points on a tube, close enough for triangles within `tolerance` of the patches.
 
     Parameters
@@ -30,13 +30,17 @@ def ring_grid(patches: FloatArray, tolerance: float) -> FloatArray:
         Bézier control points [v, u], mm.
     tolerance : float
         Largest wanted distance between triangles and surface, mm.
+    rings : int
+        Least number of rings.
 
     Returns
     -------
     (rings, around, 3) array, mm
         From the first row to the last; rings close on themselves.
     """
-    return _grid(patches, *_subdivisions(patches, tolerance))
+    along_v, along_u = _subdivisions(patches, tolerance)
+    along_v[0] = max(along_v[0], rings - len(patches))
+    return _grid(patches, along_v, along_u)
 
 
 def _subdivisions(patches: FloatArray, tolerance: float) -> tuple[IntArray, IntArray]:

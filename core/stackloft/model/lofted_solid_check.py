@@ -36,11 +36,12 @@ def check_lofted_solid(solid: LoftedSolid) -> None:
                 raise InputError(
                     "the surface is open", where=f"shell {number + 1}", found=f"a rim in {count} joints"
                 )
+    whole = max(float(np.ptp(shell.patches.reshape(-1, 3), axis=0).max()) for shell in solid.shells)
     for number, joint in enumerate(solid.joints, start=1):
-        _check_joint(joint, solid.shells, f"joint {number}")
+        _check_joint(joint, solid.shells, whole, f"joint {number}")
 
 
-def _check_joint(joint: Joint, shells: tuple[Shell, ...], name: str) -> None:
+def _check_joint(joint: Joint, shells: tuple[Shell, ...], whole: float, name: str) -> None:
     """Raise unless every edge serves two rims and the rims follow their shells."""
     uses = sorted(edge for rim in joint.rims for edge, _ in rim.edges)
     if uses != sorted([*range(len(joint.edges))] * 2):
@@ -53,10 +54,18 @@ def _check_joint(joint: Joint, shells: tuple[Shell, ...], name: str) -> None:
         for run, after in zip(runs, following, strict=True):
             _check_gap(run[-1] - after[0], size, name)
         points = patches[-1, :, 3, 0] if rim.at_last else patches[0, :, 0, 0]
-        polyline = np.concatenate(runs)
-        away = np.sqrt(((points[:, None] - polyline[None]) ** 2).sum(axis=-1).min(axis=1).max())
-        if away > RIM_TOLERANCE * size:
+        away = _furthest(points, np.concatenate(runs))
+        if away > RIM_TOLERANCE * max(size, 0.1 * whole):
             raise InputError("a rim leaves its joint", where=name, found=f"by {away:g} mm")
+
+
+def _furthest(points: FloatArray, polygon: FloatArray) -> float:
+    """Return the greatest distance of points from a closed polygon's sides, mm."""
+    side = np.roll(polygon, -1, axis=0) - polygon
+    squared = np.maximum((side**2).sum(axis=1), 1e-300)
+    arm = points[:, None] - polygon[None]
+    t = np.clip((arm * side).sum(axis=-1) / squared, 0.0, 1.0)
+    return float(np.sqrt(((arm - t[..., None] * side) ** 2).sum(axis=-1).min(axis=1).max()))
 
 
 def _check_shell(shell: Shell, name: str) -> None:

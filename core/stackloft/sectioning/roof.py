@@ -86,7 +86,7 @@ def _slope_at_start(thickness: Thickness, length: float) -> float:
     squared = (thickness.half / thickness.half[0]) ** 2
     t = -thickness.depth / length
     if len(t) < FEWEST:
-        return 1.0
+        return 0.0  # h² straight: the ridge of a body that is large beside its last pitch
     # squared = (1 - t)(1 + b t) at the next sections
     b = (squared[1:] / (1.0 - t[1:]) - 1.0) / t[1:]
     if len(b) == 1:

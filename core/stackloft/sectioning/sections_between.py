@@ -45,17 +45,22 @@ class BetweenField:
     before: FloatArray
     """(rows, columns) mm, positive inside"""
     after: FloatArray
+    hollow: bool = False
+    """True when the loops bound holes: background within, body around them."""
 
     def at(self, t: float) -> list[FloatArray]:
         """Return the loops a fraction t of the way from one section to the other."""
         field = (1.0 - t) * self.before + t * self.after
-        return zero_lines(field, self.x, self.y)
+        lines = zero_lines(field, self.x, self.y)
+        return [line[::-1] for line in lines] if self.hollow else lines
 
 
 def between(before: list[FloatArray], after: list[FloatArray]) -> BetweenField:
-    """Return the interpolator between the loops (polygons, mm) of two sections."""
+    """Return the interpolator between the loops (polygons, mm, body on the left) of two sections."""
     x, y = plane_grid([*before, *after])
-    return BetweenField(x, y, signed_distance(x, y, before), signed_distance(x, y, after))
+    largest = max([*before, *after], key=lambda p: abs(_area(p)))
+    fields = signed_distance(x, y, before), signed_distance(x, y, after)
+    return BetweenField(x, y, *fields, hollow=_area(largest) < 0.0)
 
 
 def plane_grid(loops: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -102,41 +107,29 @@ def _evened(points: FloatArray) -> FloatArray:
 
 
 def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
-    """Return (t, loops) of levels about every change of topology between t = 0 and t = 1.
+    """Return (t, loops) of levels about the change of topology between t = 0 and t = 1, increasing in t.
 
-    The change is bracketed to `CLOSEST`; levels are put in on both sides of it.
+    The last t with the first section's topology and the first t with the second's are found to `CLOSEST`;
+    what lies between them is the interpolation's noise or several changes close together.
     """
-    ends = (_topology(field.at(0.0)), _topology(field.at(1.0)))
-    marks: list[float] = [0.0]
-    now = ends[0]
-    while now != ends[1] and len(marks) < 2 * MOST_CHANGES + 1:
-        low, high = _bracket(field, marks[-1], now)
-        marks += [low, high]
-        now = _topology(field.at(high))
-    marks.append(1.0)
-    levels: list[float] = []
-    for start, stop in zip(marks[::2], marks[1::2], strict=True):
-        length = stop - start
-        graded = [start + length * g for g in GRADES] if start > 0.0 else []
-        graded += [stop - length * g for g in reversed(GRADES)] if stop < 1.0 else []
-        levels += [t for t in (start, *sorted(graded), stop) if 0.0 < t < 1.0]
-    return [(t, field.at(t)) for t in sorted(set(levels))]
+    low, high = _reach(field, 0.0, 1.0), _reach(field, 1.0, 0.0)
+    if not 0.0 < low < high < 1.0:
+        return []
+    below = [low * (1.0 - g) for g in GRADES]
+    above = [high + (1.0 - high) * g for g in reversed(GRADES)]
+    return [(t, field.at(t)) for t in (*below, low, high, *above)]
 
 
-MOST_CHANGES = 6
-"""Changes of topology looked for between two sections."""
-
-
-def _bracket(field: BetweenField, start: float, now: tuple[int, int]) -> tuple[float, float]:
-    """Return (last t with the topology `now`, first t with another)."""
-    low, high = start, 1.0
-    while high - low > CLOSEST:
-        middle = 0.5 * (low + high)
+def _reach(field: BetweenField, start: float, stop: float) -> float:
+    """Return how far from `start` towards `stop` the topology at `start` lasts."""
+    now = _topology(field.at(start))
+    while abs(stop - start) > CLOSEST:
+        middle = 0.5 * (start + stop)
         if _topology(field.at(middle)) == now:
-            low = middle
+            start = middle
         else:
-            high = middle
-    return low, high
+            stop = middle
+    return start
 
 
 def _topology(loops: list[FloatArray]) -> tuple[int, int]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stackloft.geometry.curve_stack import fit_curves
 from stackloft.geometry.end_model import distance_to_end
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack, Loop
@@ -33,6 +34,11 @@ OUTER = 3
 """Levels from which an end is guessed."""
 STRAY = 0.05
 """Part of a loop's length that may face away from the pole it is closed by."""
+LONG = 2.2
+"""Perimeter² / (4π area) of an outline that needs more points; a circle has 1, a 4.5 : 1 ellipse 2."""
+FINER = 3
+"""Times as many points on long loops, and on tubes with levels put in: neighbouring levels there lie so
+close that the difference of two coarse curves would show as a ledge of false area."""
 FACE = PlannedEnd(EndKind.FACE, 0.0, "closed over its ridge", guessed=False)
 
 
@@ -79,6 +85,15 @@ def is_single(contours: ContourStack) -> bool:
     if any(len(section.loops) != 1 for section in contours.sections):
         return False
     return all(sees_all(contours.sections[k].loops[0].points) for k in (0, -1))
+
+
+def more_points(contours: ContourStack) -> int:
+    """Return how many times as many points the loops of single-loop sections need as compact ones do.
+
+    N points are meant for outlines like an ellipse's; a long bent one has as much outline as several.
+    """
+    curves = ready_curves(contours)
+    return FINER if float((curves.lengths**2 / (4.0 * np.pi * curves.areas)).max()) > LONG else 1
 
 
 def plan_tubes(contours: ContourStack, said: tuple[End, End], height: float | None) -> TubePlan:
@@ -193,6 +208,8 @@ def _followed(inward: list[Level], loop: int) -> list[tuple[float, list[FloatArr
         if not links or not links[0].plain:
             break
         loop = links[0].after[0]
+        if len(regions[k + 1].within(loop)) != len(found[0][1]):
+            break  # a ring's thickness and a disc's are not of one kind
         found.append((inward[k + 1].z, regions[k + 1].within(loop)))
     return found
 
@@ -245,14 +262,51 @@ def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row]
 
     Where the areas close before that level there is a pole; otherwise a plane face half-way.
     """
+    roofed = _vanishing_ridge(rows, gap, at_last=at_last)
+    if roofed is not None:
+        return roofed, FACE
     z, areas = _outermost(rows, at_last=at_last)
     root = distance_to_end(areas, np.abs(z - z[0])) if len(z) >= 2 else None
     if root is not None and root < gap:
         return rows, PlannedEnd(EndKind.ROUND, root, "the areas reach zero there", guessed=False)
+    if len(z) == 1:
+        return rows, PlannedEnd(EndKind.ROUND, 0.5 * gap, "seen on one section alone", guessed=False)
     row = rows[-1] if at_last else rows[0]
     half = replace_row(row, row.z + (0.5 * gap if at_last else -0.5 * gap))
     face = PlannedEnd(EndKind.FACE, 0.0, "half-way to the section without it", guessed=False)
     return ([*rows, half] if at_last else [half, *rows]), face
+
+
+def _vanishing_ridge(rows: list[Row], gap: float, *, at_last: bool) -> list[Row] | None:
+    """Return the rows with a ridge beyond a strongly bent end; None where a pole will do."""
+    inward = rows[::-1] if at_last else rows
+    if sees_all(inward[0].loop.points):
+        return None
+    chosen = [row for row in inward if row.section is not None][:OUTER] or inward[:1]
+    half = np.array([half_thickness([_short_sides(row.loop)]) for row in chosen])
+    depth = np.array([abs(row.z - chosen[0].z) for row in chosen])
+    root = distance_to_end(half**2, depth) if len(chosen) >= 2 else None
+    length = root if root is not None and root < gap else 0.5 * gap
+    outermost = inward[0]
+    outward = 1.0 if at_last else -1.0
+    beyond = []
+    for distance, loops in roof_levels([_short_sides(outermost.loop)], Thickness(half, depth), length):
+        if len(loops) != 1:
+            break
+        beyond.append(
+            Row(outermost.z + outward * distance, Loop(loops[0]), outermost.name, None, outermost.hole)
+        )
+    return [*rows, *beyond] if at_last else [*reversed(beyond), *rows]
+
+
+def _short_sides(loop: Loop) -> FloatArray:
+    curves = fit_curves([ccw(loop.points)], [np.empty(0, dtype=np.int64)])
+    return curve_polygon(curves, 0, float(curves.lengths[0]) / SIDES)
+
+
+def ccw(points: FloatArray) -> FloatArray:
+    """Return a polygon counter-clockwise."""
+    return points[::-1] if is_hole(points) else points
 
 
 def replace_row(row: Row, z: float) -> Row:

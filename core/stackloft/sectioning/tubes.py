@@ -30,6 +30,10 @@ SHORT_CHORD = 0.02
 """A cut shorter than this fraction of the loop is drawn as one corner."""
 
 
+NARROWER = 0.3
+"""A bridge near the change of topology is shorter than this fraction of the one on the section."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Level:
     """The loops at one position."""
@@ -219,7 +223,7 @@ def _change(
         trial = _trial(one, put_in, two)
     else:
         put_in, trial = [], [_joint(one, two)]
-    if trial is None or any(t is None for t in trial):
+    if any(t is None for t in trial) or (put_in and not _narrows(trial, _joint(one, two))):
         put_in, trial = [], [_joint(one, two)]
     if trial[0] is None and not put_in:
         raise InputError(
@@ -233,6 +237,23 @@ def _change(
         open_tubes = _step(builder, low, high, step, open_tubes)
     for j, tube in zip(linked.after, open_tubes, strict=True):
         found[j] = tube
+
+
+def _narrows(trial: list[_Straight | _Joined | None], direct: _Straight | _Joined | None) -> bool:
+    """Return whether the bridges are shorter near the change than on the section itself.
+
+    A body that parts along a whole line at once keeps its bridge, and the interpolation is noise there.
+    """
+    if not isinstance(direct, _Joined):
+        return True
+    cuts = [step.cut for step in trial if isinstance(step, _Joined)]
+    return max((_bridge(cut) for cut in cuts), default=0.0) < NARROWER * _bridge(direct.cut)
+
+
+def _bridge(cut: BridgeCut) -> float:
+    """Return the length of the longest chord, mm."""
+    arcs = sum(len(whole.edges) for whole in cut.wholes)
+    return max((float(np.linalg.norm(edge[-1] - edge[0])) for edge in cut.edges[arcs:]), default=0.0)
 
 
 def _part_level(level: Level, chosen: tuple[int, ...]) -> Level:

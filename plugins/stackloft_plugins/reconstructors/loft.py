@@ -21,7 +21,7 @@ from stackloft.model.notices import Notice
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import check_against_areas
-from stackloft.sectioning.tube_plan import is_single
+from stackloft.sectioning.tube_plan import is_single, more_points
 from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
 
 OUTERMOST = 5
@@ -38,7 +38,11 @@ class LoftReconstructor:
     """
 
     points: int = option(
-        33, "points per section, corners among them", ge=5, le=2000, source="Goñi, Purlis & Salvadori (2007)"
+        33,
+        "points per section, corners among them; long or branching loops get three times as many",
+        ge=5,
+        le=2000,
+        source="Goñi, Purlis & Salvadori (2007)",
     )
     ends: str | None = option(
         None, "how the body ends, FIRST[,LAST]: auto, face, flat:LEN, round[:LEN], point[:LEN]"
@@ -64,7 +68,7 @@ class LoftReconstructor:
         """
         if not is_single(product):
             return loft_tubes(product, self.points, self._said(product), self._height(product))
-        sections = equal_points(product, self.points)
+        sections = equal_points(product, self.points * more_points(product))
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
         _self_check(patches, planned, sections, product)

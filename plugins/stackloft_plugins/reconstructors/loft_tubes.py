@@ -17,11 +17,16 @@ from stackloft.model.measurement import EndReport
 from stackloft.sectioning.ends import PlannedEnd
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas
-from stackloft.sectioning.tube_plan import PlannedTube, TubeEnd, TubePlan, plan_tubes, replace_row
+from stackloft.sectioning.tube_plan import (
+    FINER,
+    PlannedTube,
+    TubeEnd,
+    TubePlan,
+    more_points,
+    plan_tubes,
+    replace_row,
+)
 
-FINER = 3
-"""Times as many points on tubes with levels put in: neighbouring levels there lie so close that the
-difference of two coarse curves would show as a ledge of false area."""
 HAIR = 1e-3
 """A tube of one row alone is given this fraction of its size as height at most."""
 
@@ -76,12 +81,16 @@ def loft_tubes(
 def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> _Skinned:
     rows = tube.rows
     if len(rows) == 1:  # both ends are planned beyond it
-        rows = (rows[0], replace_row(rows[0], rows[0].z + HAIR * float(np.ptp(rows[0].loop.points))))
+        hair = HAIR * float(np.ptp(rows[0].loop.points))
+        if tube.ends[1].planned is None:  # the joint's row keeps its place
+            rows = (replace_row(rows[0], rows[0].z - hair), rows[0])
+        else:
+            rows = (rows[0], replace_row(rows[0], rows[0].z + hair))
     loops = [Loop(frozen_floats(row.loop.points), frozen_ints(row.loop.corners)) for row in rows]
     sections = tuple(Section(row.z, (loop,), row.name) for row, loop in zip(rows, loops, strict=True))
     stack = ContourStack(sections, contours.kind, exact=True, affine=contours.affine)
     kept = frozenset(k for k, row in enumerate(rows) if row.pinned)
-    finer = FINER if any(row.section is None for row in tube.rows) else 1
+    finer = FINER if any(row.section is None for row in tube.rows) else more_points(stack)
     equal = equal_points(stack, finer * count, kept)
     ends = (_row_end(tube.ends[0]), _row_end(tube.ends[1]))
     patches = skin(closed_rows(equal.points, equal.corners, ends))
