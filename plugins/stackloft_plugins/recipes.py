@@ -73,3 +73,30 @@ isosurface = Recipe(
     volume_bias=Bias(-1.0, 1.0, _LEVEL),
     area_bias=Bias(-1.0, 10.0, _LEVEL),
 )
+
+fem = Recipe(
+    steps=("reconstructor.loft", "mesher.sweep", "integrator.fem"),
+    summary="the loft filled with curved tetrahedra of order 2, u = 1 integrated by Gauss rules of degree 4 "
+    "(Goñi, Purlis & Salvadori 2007); what the loft says, within 2e-5",
+    options={"mesher.sweep": {"order": 2}, "integrator.fem": {"degree": 4}},
+    volume_bias=Bias(-1.0, 1.0, _LOFTED),
+    area_bias=Bias(-1.5, 1.5, _LOFTED),
+)
+
+fem_tetwild = Recipe(
+    steps=("reconstructor.loft", "mesher.tetwild", "integrator.fem"),
+    summary="the loft, of any topology, filled with curved tetrahedra by fTetWild, its boundary put back "
+    "on the loft; integrated by Gauss rules of degree 4",
+    options={"mesher.tetwild": {"order": 2}, "integrator.fem": {"degree": 4}},
+    volume_bias=Bias(-1.0, 1.0, _LOFTED),
+    area_bias=Bias(-1.5, 1.5, _LOFTED),
+)
+
+tetwild = Recipe(
+    steps=("reconstructor.isosurface", "mesher.tetwild", "integrator.fem"),
+    summary="the level's surface through the voxels filled with straight tetrahedra by fTetWild; errs as "
+    "isosurface does, and low by what fTetWild's envelope cuts off",
+    options={"mesher.tetwild": {"order": 1}},
+    volume_bias=Bias(-1.5, 1.0, _LEVEL),
+    area_bias=Bias(-2.0, 10.0, _LEVEL),
+)

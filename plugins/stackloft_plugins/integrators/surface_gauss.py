@@ -5,16 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from stackloft.geometry.patch_integrals import solid_integrals
-from stackloft.model.bias import Bias
 from stackloft.model.errors import InputError
+from stackloft.model.guessed_ends import guess_biases
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.lofted_solid_check import check_lofted_solid
 from stackloft.model.measurement import Integral
-
-_GUESSED = "where the body ends was guessed: give --height or --ends"
 
 
 @dataclass(frozen=True)
@@ -42,9 +38,5 @@ class SurfaceGauss:
         if volume <= 0.0:
             raise InputError("the lofted surface is inside out", found=f"volume {volume:g} mm³")
         area = sum(part[1] for part in parts)
-        effects = [(end.volume_effect or 0.0, end.area_effect or 0.0) for end in product.ends if end.guessed]
-        if not effects:
-            return Integral(volume, area)
-        ends = np.sum(effects, axis=0) / [volume, area]
-        volume_bias, area_bias = (Bias(-off, off, _GUESSED) for off in 1.0 + 100.0 * ends)
+        volume_bias, area_bias = guess_biases(product.ends, volume, area)
         return Integral(volume, area, volume_bias=volume_bias, area_bias=area_bias)
