@@ -62,6 +62,9 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     ends: a.Ends = None,
     height: a.Height = None,
     object: a.Object = None,  # noqa: A002 - the flag's own name
+    axis: a.Axis = None,
+    scale_uncertainty: a.ScaleUncertaintyFlag = None,
+    keep_identifiers: a.KeepIdentifiers = False,
     settings: a.Settings = None,
     recipe: a.RecipeFile = None,
     reader: a.Reader = None,
@@ -84,6 +87,9 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "ends": ends,
         "height": height,
         "object": object,
+        "axis": axis,
+        "scale_uncertainty": scale_uncertainty,
+        "keep_identifiers": keep_identifiers or None,
     }
     writers, own = split_settings(parse_settings(settings or ()))
     request = request_of(
@@ -94,7 +100,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
 
 @app.command()
 @guarded
-def info(
+def info(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
     source: a.Source,
     json: a.Json = False,
     units: a.ShownUnits = a.Units.MM,
@@ -102,6 +108,8 @@ def info(
     reference: a.ReferenceFlag = None,
     thickness: a.Thickness = None,
     positions: a.Positions = None,
+    scale_uncertainty: a.ScaleUncertaintyFlag = None,
+    keep_identifiers: a.KeepIdentifiers = False,
     settings: a.Settings = None,
     reader: a.Reader = None,
 ) -> None:
@@ -115,6 +123,8 @@ def info(
         "reference": reference,
         "thickness": thickness,
         "positions": positions,
+        "scale_uncertainty": scale_uncertainty,
+        "keep_identifiers": keep_identifiers or None,
     }
     own = parse_settings(settings or ())
     request = request_of(source, reader=reader, method=None, flags=flags, settings=own)

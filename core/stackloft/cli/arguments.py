@@ -70,6 +70,28 @@ Object = Annotated[
         help="Which body of a scan: by size or label, or the one at a point in patient mm.",
     ),
 ]
+Axis = Annotated[
+    str | None,
+    typer.Option(
+        "--axis",
+        metavar="auto|0|1|2",
+        help="Scans: the array's axis that sections go across; auto: filled sections, least variation.",
+    ),
+]
+ScaleUncertaintyFlag = Annotated[
+    str | None,
+    typer.Option(
+        "--scale-uncertainty",
+        metavar="PERCENT",
+        help="How well the pixel or voxel size is known, as in 0.2%.",
+    ),
+]
+KeepIdentifiers = Annotated[
+    bool,
+    typer.Option(
+        "--keep-identifiers", help="DICOM: keep patient's name, number and descriptions in what is written."
+    ),
+]
 PixelSize = Annotated[
     str | None,
     typer.Option("--pixel-size", metavar="LEN", help="Side of one pixel, as in 0.21mm."),

@@ -162,6 +162,8 @@ def _from_text(item: OptionField, value: Any) -> Any:
 
 def _typed(item: OptionField, value: Any) -> Any:
     element = _element(item.annotation)
+    if item.unit == "%" and isinstance(value, str):
+        value = value.strip().removesuffix("%")
     if element is None:
         parse = parse_length if item.unit == "mm" else _parser(item.annotation)
         return parse(value) if parse and isinstance(value, str) else value

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from stackloft.model.arrays import BoolArray
+from stackloft.model.scale import scale_of_slices
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Hints, Picture, SliceStack
 from stackloft.sectioning.linked_pieces import LinkedPieces
@@ -83,6 +84,7 @@ def cut_stack(stack: SliceStack, first: int, stop: int) -> SliceStack:
         positions=stack.positions[kept],
         pixel_spacing=stack.pixel_spacing[kept],
         thickness=None if stack.thickness is None else stack.thickness[kept],
+        scale_uncertainty=scale_of_slices(stack.scale_uncertainty, np.arange(first, stop)),
         hints=_shifted_hints(stack.hints, first, stop),
     )
 

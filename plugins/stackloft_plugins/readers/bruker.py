@@ -35,6 +35,7 @@ from stackloft_plugins.readers.bruker_files import (
     reconstructions,
 )
 from stackloft_plugins.readers.jcamp import read_parameters
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.slab_notices import slab_notices
 from stackloft_plugins.readers.slice_geometry import place_slices
 from stackloft_plugins.readers.visu_frames import VisuFrames, visu_frames
@@ -71,6 +72,7 @@ class BrukerReader:
         None, "which of several frames at the same places (echoes, time points), from 1", ge=1
     )
     allow_gaps: bool = option(False, "keep a gap that looks like a missing slice")
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.95 for a ``2dseq`` or ``visu_pars``, or a folder with one reconstruction; 0 otherwise."""
@@ -111,8 +113,8 @@ class BrukerReader:
             "grey scale": "stored values by VisuCoreDataSlope and VisuCoreDataOffs",
         }
         if len(frames.shape) == 3:
-            return self._block(frames, values, folder, own)
-        return self._slices(frames, values, folder, own)
+            return with_scale(self._block(frames, values, folder, own), self.scale_uncertainty, path)
+        return with_scale(self._slices(frames, values, folder, own), self.scale_uncertainty, path)
 
     def _block(self, frames: VisuFrames, values: Any, folder: Path, own: dict[str, str]) -> SliceStack:
         """Return the stack of one three-dimensional frame."""

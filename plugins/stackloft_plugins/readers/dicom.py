@@ -41,6 +41,7 @@ from stackloft_plugins.readers.dicom_series import (
     one_volume,
     series_of,
 )
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.slab_notices import slab_notices
 from stackloft_plugins.readers.slice_geometry import Placed, place_slices
 
@@ -80,6 +81,7 @@ class DicomReader:
     keep_identifiers: bool = option(
         False, "keep patient's name and number and the descriptions in what is written"
     )
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.9 when the file, or one of the first below the folder, begins as DICOM; 0 otherwise."""
@@ -121,7 +123,8 @@ class DicomReader:
             check_decoder(syntax, frame.path)
         slabs = None if thickness is None else frozen_floats(thickness[placed.order])
         notices = (*drawn, *several, *left_out, *one, *placed.notices, *slab_notices(placed.positions, slabs))
-        return self._stack(ordered, placed, slabs, notices, label(every, chosen), path)
+        stack = self._stack(ordered, placed, slabs, notices, label(every, chosen), path)
+        return with_scale(stack, self.scale_uncertainty, path)
 
     def _stack(
         self,

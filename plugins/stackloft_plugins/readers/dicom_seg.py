@@ -24,10 +24,13 @@ from stackloft.model.arrays import read_only
 from stackloft.model.errors import InputError, UsageError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture
+from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.array_axis import AXES, MEMORY, along_axis
 from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.dicom_objects import SEGMENTATION, object_confidence, objects_at
-from stackloft_plugins.readers.seg_file import FRACTIONAL, read_segment_frames
+from stackloft_plugins.readers.label_map import best_axis_of
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
+from stackloft_plugins.readers.seg_file import FRACTIONAL, SegmentFrames, read_segment_frames
 from stackloft_plugins.readers.seg_planes import SegmentPlanes, segment_planes
 
 _LISTED = 20
@@ -53,9 +56,12 @@ class DicomSegReader:
     produces: ClassVar[tuple[type, ...]] = (Segmentation,)
 
     object: str = option(LARGEST, "which segment: largest, its number or its label")
+    axis: str = option("0", "the array's axis that sections are taken across", choices=AXES)
+    memory: float = option(MEMORY, "what another axis than 0 may take for the whole map", unit="MB", gt=0)
     keep_identifiers: bool = option(
         False, "keep patient's name and number and the descriptions in what is written"
     )
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.95 for a segmentation, or a folder with no other DICOM file; 0 otherwise."""
@@ -81,13 +87,18 @@ class DicomSegReader:
         planes = segment_planes(content, source)
         number, several = _chosen(planes, self.object, source)
         stack = planes.stack(number, several)
-        whole = Segmentation(
-            stack,
-            _Field(0.5 * content.most if content.kind == FRACTIONAL else 0.5),
-            binary=content.kind != FRACTIONAL,
-            labels=() if content.kind == FRACTIONAL else (1,),
-        )
-        return _body(whole, number, f"{source.name}, segment {planes.label(number)}")
+        where = f"{source.name}, segment {planes.label(number)}"
+        body = _body(_segmentation(stack, content), number, where)
+        axis, told = (int(self.axis), ()) if self.axis != "auto" else best_axis_of(body)
+        if axis:
+            body = _body(_segmentation(along_axis(stack, axis, self.memory), content), number, where)
+        return with_scale(replace(body, notices=(*body.notices, *told)), self.scale_uncertainty, path)
+
+
+def _segmentation(stack: SliceStack, content: SegmentFrames) -> Segmentation:
+    if content.kind == FRACTIONAL:
+        return Segmentation(stack, _Field(0.5 * content.most))
+    return Segmentation(stack, _Field(0.5), binary=True, labels=(1,))
 
 
 @dataclass(frozen=True, slots=True)

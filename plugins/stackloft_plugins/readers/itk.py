@@ -17,9 +17,11 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.array_axis import AXES, MEMORY
 from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.itk_header import ItkHeader, form_of, read_header
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
 
 _CONFIDENCE = 0.9
@@ -49,6 +51,9 @@ class ItkReader:
 
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
     object: str = option(LARGEST, "label maps: which body, largest or its label")
+    axis: str = option("0", "label maps: the array's axis that sections are taken across", choices=AXES)
+    memory: float = option(MEMORY, "what another axis than 0 may take for the whole map", unit="MB", gt=0)
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a file that begins as NRRD, MetaImage or NIfTI, packed by gzip or not."""
@@ -76,7 +81,8 @@ class ItkReader:
         volume = _Volume(path, header)
         told = {"positions": f"{header.form} header", "pixel size": f"{header.form} header"}
         stack = volume_stack(volume.grid(), volume, path, told, _unit_notice(header, path))
-        return as_labels(stack, self.labels, self.object)
+        known = with_scale(stack, self.scale_uncertainty, path)
+        return as_labels(known, self.labels, self.object, self.axis, self.memory)
 
 
 class _Volume:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.array_axis import MEMORY, along_axis
 from stackloft.sectioning.object_choice import LARGEST, one_object
 
 CHOICES = ("auto", "yes", "no")
@@ -15,7 +19,9 @@ MOST_LABELS = 32
 _SAMPLED = 9
 
 
-def as_labels(stack: SliceStack, wanted: str, body: str = LARGEST) -> SliceStack | Segmentation:
+def as_labels(
+    stack: SliceStack, wanted: str, body: str = LARGEST, axis: str = "0", memory: float = MEMORY
+) -> SliceStack | Segmentation:
     """Return the Segmentation of one label when the pictures are labels, else the stack.
 
     Parameters
@@ -25,6 +31,8 @@ def as_labels(stack: SliceStack, wanted: str, body: str = LARGEST) -> SliceStack
         ``auto``: whole numbers of few values in a sample of slices, 0 among them, are labels.
     body : str
         ``largest`` or a label.
+    axis, memory
+        As `stackloft.sectioning.array_axis.along_axis` takes them, or ``auto``.
 
     Raises
     ------
@@ -50,8 +58,24 @@ def as_labels(stack: SliceStack, wanted: str, body: str = LARGEST) -> SliceStack
     labels.discard(0)
     if not labels:
         raise InputError("the label map holds no label", where=stack.names[0])
-    every = Segmentation(stack, _field_of, binary=True, labels=tuple(sorted(labels)))
-    return one_object(every, body)
+    known = tuple(sorted(labels))
+    whole = one_object(_segmentation(stack, known), body)
+    number, told = (int(axis), ()) if axis != "auto" else best_axis_of(whole)
+    if number:
+        whole = one_object(_segmentation(along_axis(stack, number, memory), known), body)
+    return replace(whole, notices=(*whole.notices, *told))
+
+
+def best_axis_of(body: Segmentation) -> tuple[int, tuple[Notice, ...]]:
+    """Return the axis that a body is best cut across, and a notice of the choice."""
+    from stackloft.sectioning.best_axis import axis_notice, best_axis  # noqa: PLC0415 - it needs OpenCV
+
+    axis, told = best_axis(body)
+    return axis, axis_notice(told)
+
+
+def _segmentation(stack: SliceStack, labels: tuple[int, ...]) -> Segmentation:
+    return Segmentation(stack, _field_of, binary=True, labels=labels)
 
 
 def _field_of(number: int, picture: Picture) -> SectionField:  # noqa: ARG001 - a field_of

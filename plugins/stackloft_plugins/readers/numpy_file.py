@@ -16,9 +16,11 @@ from stackloft.model.arrays import read_only
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.array_axis import AXES, MEMORY
 from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.block_spacing import FileSpacing, block_spacing
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.section_spacing import SpacingOptions
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
 
@@ -57,6 +59,9 @@ class NumpyReader:
     array: str = option("", "name of the array in an .npz file; the only volume in it when empty")
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
     object: str = option(LARGEST, "label maps: which body, largest or its label")
+    axis: str = option("0", "label maps: the array's axis that sections are taken across", choices=AXES)
+    memory: float = option(MEMORY, "what another axis than 0 may take for the whole map", unit="MB", gt=0)
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a file that begins as NumPy's, 0 otherwise."""
@@ -83,7 +88,9 @@ class NumpyReader:
         flags = SpacingOptions(self.pixel_size, self.thickness, self.positions)
         spacing = block_spacing(flags, volume.said(), volume.shape[0], path)
         grid = VoxelGrid(volume.shape, spacing.pixel, spacing.positions)
-        return as_labels(volume_stack(grid, volume, path, spacing.provenance), self.labels, self.object)
+        stack = volume_stack(grid, volume, path, spacing.provenance)
+        known = with_scale(stack, self.scale_uncertainty, path)
+        return as_labels(known, self.labels, self.object, self.axis, self.memory)
 
 
 class _Volume:

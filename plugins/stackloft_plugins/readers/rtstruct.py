@@ -23,6 +23,7 @@ from stackloft.sectioning.object_choice import KIND, LARGEST, OBJECT, OBJECTS
 from stackloft_plugins.readers.dicom_objects import RTSTRUCT, object_confidence, objects_at
 from stackloft_plugins.readers.rtstruct_file import CLOSED, Contour, Region, read_structure_set
 from stackloft_plugins.readers.rtstruct_planes import planar_sections, vector_area
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 
 _LISTED = 20
 
@@ -51,6 +52,7 @@ class RtstructReader:
     keep_identifiers: bool = option(
         False, "keep patient's name and number and the descriptions in what is written"
     )
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.95 for a structure set, or a folder with no other DICOM file; 0 otherwise."""
@@ -81,7 +83,7 @@ class RtstructReader:
         slab = slabs.pop() if len(slabs) == 1 else None
         said = load_stack_file(source.parent)
         kind = SectionKind.FACE if slab is None else SectionKind.SLAB
-        return ContourStack(
+        stack = ContourStack(
             sections=planes.sections,
             kind=kind if said.kind is None else said.kind,
             exact=True,
@@ -98,6 +100,7 @@ class RtstructReader:
                 **dict(content.private),
             },
         )
+        return with_scale(stack, self.scale_uncertainty, path)
 
 
 def _one_file(path: Path) -> Path:

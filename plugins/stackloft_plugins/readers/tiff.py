@@ -12,10 +12,12 @@ from stackloft.contracts.stack_file import load_stack_file
 from stackloft.model.errors import InputError, StackloftError
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.array_axis import AXES, MEMORY
 from stackloft.sectioning.object_choice import LARGEST
 from stackloft_plugins.readers.block_spacing import FileSpacing, block_spacing
 from stackloft_plugins.readers.label_map import CHOICES, as_labels
 from stackloft_plugins.readers.picture_kinds import natural_key
+from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.section_spacing import SpacingOptions
 from stackloft_plugins.readers.tiff_pages import TiffPages, tiff_pages
 from stackloft_plugins.readers.volume_stack import VoxelGrid, volume_stack
@@ -54,6 +56,9 @@ class TiffReader:
     )
     labels: str = option("auto", "whether the values are labels of bodies", choices=CHOICES)
     object: str = option(LARGEST, "label maps: which body, largest or its label")
+    axis: str = option("0", "label maps: the array's axis that sections are taken across", choices=AXES)
+    memory: float = option(MEMORY, "what another axis than 0 may take for the whole map", unit="MB", gt=0)
+    scale_uncertainty: float | None = option(None, CALIBRATION, unit="%", ge=0, lt=100)
 
     def probe(self, path: Path) -> float:
         """Return 0.9 for a TIFF file, less for a folder of them, 0 for anything else."""
@@ -86,7 +91,8 @@ class TiffReader:
         grid = VoxelGrid(shape, spacing.pixel, spacing.positions)
         names = [_name(pages, k) for pages, k in slices]
         stack = volume_stack(grid, _Decoder(slices), path, spacing.provenance, names=names)
-        return as_labels(stack, self.labels, self.object)
+        known = with_scale(stack, self.scale_uncertainty, path)
+        return as_labels(known, self.labels, self.object, self.axis, self.memory)
 
 
 class _Decoder:

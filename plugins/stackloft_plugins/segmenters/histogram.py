@@ -8,7 +8,7 @@ and the background beside it; the textbook thresholds can be chosen instead.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,10 +18,12 @@ from stackloft.model.errors import UsageError
 from stackloft.model.lengths import parse_length
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.array_axis import AXES, MEMORY, along_axis
+from stackloft.sectioning.best_axis import axis_notice, best_axis
 from stackloft.sectioning.object_choice import LARGEST, one_object
 from stackloft_plugins.segmenters.grey import CHANNELS
 from stackloft_plugins.segmenters.histogram_levels import METHODS
-from stackloft_plugins.segmenters.slab_field import SlabRules, slab_segmentation
+from stackloft_plugins.segmenters.slab_field import SlabRules, prepared, slab_segmentation
 from stackloft_plugins.segmenters.slab_level import SAMPLED
 from stackloft_plugins.segmenters.slice_field import LevelRules, mask_field, slice_field
 
@@ -86,6 +88,10 @@ class HistogramSegmenter:
         "fill", "scans: whether voids that are closed on every side count as body", choices=("fill", "keep")
     )
     object: str = option(LARGEST, "scans: which body: largest, its rank by size from 1, or seed:X,Y,Z")
+    axis: str = option("0", "scans: the array's axis that sections are taken across", choices=AXES)
+    memory: float = option(
+        MEMORY, "scans: what another axis than 0 may take for the whole scan", unit="MB", gt=0
+    )
     channel: str = option("luminance", "what grey is made of", choices=tuple(CHANNELS))
 
     def segment(self, stack: SliceStack) -> Segmentation:
@@ -102,7 +108,9 @@ class HistogramSegmenter:
         if self.method == "manual" and self.threshold is None:
             raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
         if stack.kind is SectionKind.SLAB and self.scope != "slice":
-            return one_object(slab_segmentation(stack, self._slab_rules()), self.object)
+            return self._of_slabs(stack)
+        if self.axis != "0":
+            raise UsageError("photographs have one axis", where="--axis", found=self.axis, expected="0")
         if self.object != LARGEST:
             raise UsageError(
                 "photographs show one body", where="--object", found=self.object, expected=LARGEST
@@ -115,6 +123,17 @@ class HistogramSegmenter:
             return self._field(stack, number, picture, threshold)
 
         return Segmentation(stack, field_of)
+
+    def _of_slabs(self, stack: SliceStack) -> Segmentation:
+        rules = self._slab_rules()
+        ready = prepared(stack, rules)
+        whole = one_object(slab_segmentation(ready, rules), self.object)
+        axis, told = (int(self.axis), "") if self.axis != "auto" else best_axis(whole)
+        if axis == 0:
+            return replace(whole, notices=(*whole.notices, *axis_notice(told)))
+        turned = along_axis(ready, axis, self.memory)
+        found = one_object(slab_segmentation(turned, rules), self.object)
+        return replace(found, notices=(*found.notices, *axis_notice(told)))
 
     def _slab_rules(self) -> SlabRules:
         thickness = parse_length(self.holder_thickness, "--set segmenter.holder_thickness")

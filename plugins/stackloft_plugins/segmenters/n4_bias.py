@@ -63,7 +63,7 @@ def _inside(mask: Any) -> Any:
     """Return the mask without its rim, whose pixels are filled in part and look dimmer than they are lit."""
     import SimpleITK as sitk  # noqa: N813, PLC0415 - as above
 
-    core = sitk.BinaryErode(mask, (_RIM, _RIM, 0))
+    core = sitk.BinaryErode(mask, (_RIM, _RIM, 0))  # type: ignore[no-untyped-call]
     kept = np.count_nonzero(sitk.GetArrayViewFromImage(core))
     return core if kept > _LEAST * np.count_nonzero(sitk.GetArrayViewFromImage(mask)) else mask
 

@@ -43,6 +43,22 @@ class SlabRules:
     """mm: a holder no thicker than this is taken out; None: it is left where it is."""
 
 
+def prepared(stack: SliceStack, rules: SlabRules) -> SliceStack:
+    """Return the scan with its brightness evened out and its holder taken out, where that is asked for.
+
+    Raises
+    ------
+    InputError
+        There is nothing to correct, or what is the same on all slices is no holder.
+    """
+    if rules.even_out:
+        stack = bias_corrected(stack, rules.channel)
+    if rules.holder is not None:
+        rough = slab_level(stack, "otsu", rules.channel, stack.hints.background, rules.sample)
+        stack = without_holder(stack, rules.channel, rough, rules.holder)
+    return stack
+
+
 def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
     """Return the segmentation of a scan by one level, or by a window of grey levels.
 
@@ -61,11 +77,6 @@ def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
     >>> slab_segmentation(stack, SlabRules()).field_of(0, scan).threshold
     -480.0
     """
-    if rules.even_out:
-        stack = bias_corrected(stack, rules.channel)
-    if rules.holder is not None:
-        rough = slab_level(stack, "otsu", rules.channel, stack.hints.background, rules.sample)
-        stack = without_holder(stack, rules.channel, rough, rules.holder)
     field, told, notices = _field(stack, rules)
     stack = replace(stack, provenance={**stack.provenance, "grey level": told})
     return Segmentation(stack, _Masked(stack, field), notices=notices, fill_voids=rules.fill_voids)
