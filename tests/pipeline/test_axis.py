@@ -24,8 +24,8 @@ def scans(tmp_path_factory):
     }.items():
         form = options.pop("form")
         write_phantom(
-            "ellipsoid", form, folder / name, parameters=made, rotation=3, sections=24, pixel_size=1.6, slab_points=3,
-            stretch=1.2, empty=2, **options,
+            "ellipsoid", form, folder / name, parameters=made, rotation=3, sections=24, pixel_size=1.6,
+            slab_points=3, stretch=1.2, empty=2, **options,
         )  # fmt: skip
     return folder
 
@@ -46,17 +46,19 @@ def figures(path, axis, method):
 def test_voxels_are_the_same_along_every_axis(scans, name, axes):
     expected, _ = figures(source(scans, name), "0", "voxel")
     for axis in axes:
-        assert figures(source(scans, name), axis, "voxel")[0] == pytest.approx(expected, rel=1e-6)
+        assert figures(source(scans, name), axis, "voxel")[0] == pytest.approx(
+            expected, rel=2e-3
+        )  # end sections of few pixels
 
 
 @pytest.mark.parametrize(("name", "axes"), [("turned", "12"), ("tilted", "1")])
 def test_the_loft_is_the_same_body_along_every_axis(scans, name, axes):
     exact = 4 / 3 * np.pi * 21 * 15 * 26
     straight = figures(source(scans, name), "0", "loft")
-    assert straight[0] == pytest.approx(exact, rel=3e-3)
+    assert straight[0] == pytest.approx(exact, rel=5e-3)
     for axis in axes:
         volume, area = figures(source(scans, name), axis, "loft")
-        assert volume == pytest.approx(exact, rel=3e-3)
+        assert volume == pytest.approx(exact, rel=5e-3)
         assert area == pytest.approx(straight[1], rel=5e-3)
 
 
