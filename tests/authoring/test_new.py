@@ -16,7 +16,7 @@ INSTALL = "pip install -q --no-build-isolation --no-deps -e ."
 
 
 def test_every_family_that_has_a_product_has_a_template():
-    assert families() == ("reader", "segmenter", "reconstructor", "integrator", "writer", "recipe")
+    assert families() == ("reader", "segmenter", "reconstructor", "mesher", "integrator", "writer", "recipe")
 
 
 QUICK = ("reader", "integrator")
@@ -79,7 +79,7 @@ def test_a_fault_in_the_plugin_fails_its_check(lab, tmp_path):
     ("arguments", "words"),
     [
         ("readr acme-xct", "did you mean reader"),
-        ("mesher acme-mesh", "there is no product for it to give yet"),
+        ("mesh acme-mesh", "did you mean mesher"),
         ("reader Acme_XCT", "is no name for a plug-in"),
         ("reader json", "would hide the package json"),
         ("reader dicom", "stackloft already has a reader 'dicom'"),

@@ -101,9 +101,7 @@ def _texts(folder: Traversable, above: str = "") -> dict[str, str]:
 def _check(family: str, name: str) -> None:
     known = families()
     if family not in known:
-        reason = (
-            "there is no product for it to give yet" if family == "mesher" else nearest(family, list(known))
-        )
+        reason = nearest(family, list(known))
         raise UsageError(f"no template for a {family}", expected=", ".join(known), fix=reason)
     if not _NAME.fullmatch(name):
         raise UsageError(f"{name!r} is no name for a plug-in", expected="lower case with hyphens: acme-xct")

@@ -25,6 +25,7 @@ from stackloft.registry.member_checks import METHODS
 from stackloft.registry.scan import catalogue
 from stackloft.testing.conformance.check import Check
 from stackloft.testing.conformance.integrator_checks import IntegratorCase, integrator_checks
+from stackloft.testing.conformance.mesher_checks import MesherCase, mesher_checks
 from stackloft.testing.conformance.reader_case import ReaderCase
 from stackloft.testing.conformance.reader_checks import reader_checks
 from stackloft.testing.conformance.recipe_checks import RecipeCase, recipe_checks
@@ -45,11 +46,12 @@ KITS: dict[str, Kit] = {
     "reader": Kit(ReaderCase, reader_checks),
     "segmenter": Kit(SegmenterCase, segmenter_checks),
     "reconstructor": Kit(ReconstructorCase, reconstructor_checks),
+    "mesher": Kit(MesherCase, mesher_checks),
     "integrator": Kit(IntegratorCase, integrator_checks),
     "writer": Kit(WriterCase, writer_checks),
     "recipe": Kit(RecipeCase, recipe_checks),
 }
-"""Kits by family; a mesher has none yet, as there is no product for it to give."""
+"""Kits by family."""
 
 
 def checks_of(name: str) -> list[Check]:
@@ -92,7 +94,7 @@ def checks_of(name: str) -> list[Check]:
 def _subject(name: str) -> tuple[str, str, Any]:
     """Return the key, the family and the plug-in that `name` means."""
     family, _, rest = name.partition(".")
-    if family in {*KITS, "mesher"} and ":" not in family:
+    if family in KITS and ":" not in family:
         return name, family, find(family, rest).plugin
     module, colon, attribute = name.partition(":")
     if not colon:
