@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from stackloft.model.arrays import frozen_floats, frozen_ints
 from stackloft.model.measurement import Result
+from stackloft.model.tet_mesh import TetMesh
 from stackloft_plugins import conformance_scans as scans
 
 _GIVEN = {"pixel_size": "0.3mm", "thickness": "2.5mm"}
@@ -103,6 +105,28 @@ def write_surface(folder: Path, slices: int) -> Path:
     return path
 
 
+def read_mphtxt(path: Path) -> TetMesh:
+    """Read COMSOL's text by its description: counts, then numbers, comments behind #."""
+    words = [
+        word
+        for line in path.read_text(encoding="utf-8").splitlines()
+        for word in line.partition("#")[0].split()
+    ]
+    at = words.index("Mesh") + 2
+    count, at = int(words[at + 1]), at + 3
+    nodes = np.array(words[at : at + 3 * count], dtype=float).reshape(-1, 3)
+    at += 3 * count + 1
+    blocks = {}
+    while words[at + 1][:3] in {"tri", "tet"}:
+        name, width, rows = words[at + 1], int(words[at + 2]), int(words[at + 3])
+        at += 4
+        blocks[name] = np.array(words[at : at + width * rows], dtype=np.int64).reshape(rows, width)
+        at += width * rows
+        at += 1 + int(words[at])
+    faces, elements = blocks["tri2"][:, [0, 1, 2, 3, 5, 4]], blocks["tet2"][:, [0, 1, 2, 3, 4, 6, 5, 7, 8, 9]]
+    return TetMesh(frozen_floats(nodes), frozen_ints(elements), frozen_ints(faces))
+
+
 CASES: Mapping[str, Mapping[str, Any]] = {
     "reader.photos": {"write": write_pictures, "options": _GIVEN, "spacing_options": tuple(_GIVEN)},
     "reader.numpy": {
@@ -151,6 +175,7 @@ CASES: Mapping[str, Mapping[str, Any]] = {
         ),
     },
     "writer.json": {"read": _json_figures, "expected": _figures},
+    "writer.mphtxt": {"read": read_mphtxt},
     "writer.csv": {"read": _csv_areas, "expected": _areas},
     "integrator.frustum": {
         "expected_failures": {

@@ -34,6 +34,9 @@ def hoard(arrays):
         kept.append(np.ones(2**20)); time.sleep(0.002)
 def gulp(arrays): return {"a": np.ones(2**34)}
 def raises(arrays): raise ValueError("the mesh is bad")
+def litters(arrays):
+    open("litter.txt", "w").write("here")
+    return arrays
 def killed(arrays): os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -117,3 +120,10 @@ def _state(pid):
 def test_bytes_that_are_no_message_are_said_to_be_none():
     with pytest.raises(ValueError, match="not a message"):
         unpack(b"PK\x03\x04 cut off")
+
+
+def test_what_a_library_drops_in_its_folder_is_gone(deed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    deed("litters", arrays={"a": np.zeros(1)})
+    assert [path for path in sorted(tmp_path.iterdir()) if path.name != "__pycache__"] == before

@@ -75,15 +75,32 @@ def surface_regions(vertices: FloatArray, faces: IntArray, angle: float = SHARP)
     pairs, edges = _neighbours(faces)
     across = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]])
     solid = (normals != 0.0).any(axis=1)
-    flat = ~(solid[pairs[:, 0]] & solid[pairs[:, 1]])  # a triangle without area goes with its neighbours
-    smooth = flat | (across >= np.cos(np.radians(angle)))
+    whole = solid[pairs[:, 0]] & solid[pairs[:, 1]]
+    smooth = whole & (across >= np.cos(np.radians(angle)))
     joined = coo_array((np.ones(smooth.sum()), tuple(pairs[smooth].T)), shape=(len(faces),) * 2)
-    count, region = connected_components(joined, directed=False)
-    sides = np.sort(region[pairs[~smooth]], axis=1).astype(np.int64)
+    parts = connected_components(joined, directed=False)[1].astype(np.int64)
+    region = _adopted(parts, solid, pairs)
+    count = int(region.max()) + 1
+    sharp = (region[pairs[:, 0]] != region[pairs[:, 1]]) | (whole & ~smooth)
+    sides, sharp = np.sort(region[pairs[sharp]], axis=1), edges[sharp]
     plane = np.array([_is_plane(vertices, faces[region == k], normals[region == k]) for k in range(count)])
-    sharp = edges[~smooth]
     corners = _corners(vertices, faces, sharp, sides)
-    return SurfaceRegions(region.astype(np.int64), plane, normals, sharp, sides, corners)
+    return SurfaceRegions(region, plane, normals, sharp, sides, corners)
+
+
+def _adopted(region: IntArray, solid: BoolArray, pairs: IntArray) -> IntArray:
+    """Return the regions numbered from 0, a triangle without area in that of one of its neighbours.
+
+    It must not join the two regions whose common edge it lies along.
+    """
+    result = np.where(solid, region, -1).astype(np.int64)
+    both = np.concatenate([pairs, pairs[:, ::-1]])
+    while True:
+        taking = both[(result[both[:, 0]] < 0) & (result[both[:, 1]] >= 0)]
+        if not len(taking):
+            break
+        result[taking[:, 0]] = result[taking[:, 1]]
+    return np.unique(result, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
 def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
@@ -91,7 +108,7 @@ def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     cross = np.cross(b - a, c - a)
     length = np.linalg.norm(cross, axis=1, keepdims=True)
     longest = np.max([np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
-    solid = length > 1e-12 * longest[:, None] ** 2
+    solid = length > 1e-7 * longest[:, None] ** 2
     return np.asarray(np.divide(cross, length, out=np.zeros_like(cross), where=solid & (length > 0.0)))
 
 

@@ -163,9 +163,19 @@ def _placed(
 ) -> TetMesh:
     """Return the mesh with its boundary on the target, at `order`."""
     try:
-        flat = boundary_faces(elements)
-    except ValueError as error:
+        return _on_target(nodes, elements, target, body, order, reach)
+    except (
+        ValueError,
+        RuntimeError,
+        np.linalg.LinAlgError,
+    ) as error:  # faces of three elements, flat elements
         raise _UnfitError(str(error), np.inf) from error
+
+
+def _on_target(
+    nodes: FloatArray, elements: IntArray, target: BoundaryTarget, body: _Body, order: int, reach: float
+) -> TetMesh:
+    flat = boundary_faces(elements)
     regions = regions_of_faces(nodes, flat, target, 2.0 * reach)
     rim = np.unique(flat)
     held = np.zeros(len(nodes), dtype=bool)

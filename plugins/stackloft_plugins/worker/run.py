@@ -17,7 +17,7 @@ import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any
 
 from numpy.typing import NDArray
@@ -107,11 +107,21 @@ def _watched(function: str, message: bytes, limits: Limits) -> _End:
     """Run the worker to its end, which may be this function's doing; files without names carry the talk."""
     command = [sys.executable, "-P", "-m", "stackloft_plugins.worker.child", function]
     command += [repr(limits.seconds), repr(limits.megabytes)]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    with TemporaryFile() as asked, TemporaryFile() as answer, TemporaryFile() as stderr:
+    places = [os.path.abspath(place) for place in sys.path if place]  # noqa: PTH100 - places may be archives
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
+    with (
+        TemporaryDirectory(
+            prefix="stackloft-worker-"
+        ) as folder,  # where a library may drop files as it likes
+        TemporaryFile() as asked,
+        TemporaryFile() as answer,
+        TemporaryFile() as stderr,
+    ):
         asked.write(message)
         asked.seek(0)
-        with subprocess.Popen(command, stdin=asked, stdout=answer, stderr=stderr, env=environment) as child:
+        with subprocess.Popen(
+            command, stdin=asked, stdout=answer, stderr=stderr, env=environment, cwd=folder
+        ) as child:
             try:
                 most, killed = _watch(child, limits)
             finally:

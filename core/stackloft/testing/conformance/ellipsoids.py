@@ -22,7 +22,9 @@ from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.segmentation import Segmentation
+from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tri_mesh import TriMesh
+from stackloft.testing.conformance.tet_ellipsoid import tet_ellipsoid
 from stackloft.testing.conformance.voxel_ellipsoid import scan
 
 A, B = 14.0, 8.0
@@ -110,10 +112,16 @@ def segmentation(fineness: int) -> Segmentation:
     return scan((A, B, B), CENTRE, fineness)
 
 
+def tet_mesh(fineness: int) -> TetMesh:
+    """Return tetrahedra of order 2 on the triangles of `tri_mesh`, with two boundary groups."""
+    return tet_ellipsoid(tri_mesh(fineness), CENTRE, np.array([A, B, B]))
+
+
 MAKERS: dict[type, Callable[[int], Any]] = {
     Segmentation: segmentation,
     ContourStack: contour_stack,
     LoftedSolid: lofted_solid,
     TriMesh: tri_mesh,
+    TetMesh: tet_mesh,
 }
 """Fineness to product, by product type."""

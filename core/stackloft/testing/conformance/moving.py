@@ -13,7 +13,9 @@ from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture
+from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tri_mesh import TriMesh
+from stackloft.testing.conformance.tet_ellipsoid import MIRROR_TET, MIRROR_TRIANGLE
 
 
 @singledispatch
@@ -22,7 +24,7 @@ def transformed(product: Any, matrix: FloatArray, shift: FloatArray) -> Any:
 
     Parameters
     ----------
-    product : Segmentation, ContourStack, LoftedSolid or TriMesh
+    product : Segmentation, ContourStack, LoftedSolid, TriMesh or TetMesh
         For a ContourStack `matrix` must keep the axis: [[a, b, 0], [c, d, 0], [0, 0, e]], e > 0.
     matrix : (3, 3) array
         A similarity.
@@ -65,6 +67,15 @@ def _(product: TriMesh, matrix: FloatArray, shift: FloatArray) -> TriMesh:
     return replace(
         product, vertices=frozen_floats(product.vertices @ matrix.T + shift), faces=frozen_ints(faces)
     )
+
+
+@transformed.register
+def _(product: TetMesh, matrix: FloatArray, shift: FloatArray) -> TetMesh:
+    elements, faces = product.elements, product.faces
+    if np.linalg.det(matrix) < 0:
+        elements, faces = elements[:, MIRROR_TET], faces[:, MIRROR_TRIANGLE]
+    nodes = frozen_floats(product.nodes @ matrix.T + shift)
+    return replace(product, nodes=nodes, elements=frozen_ints(elements), faces=frozen_ints(faces))
 
 
 @transformed.register
@@ -113,6 +124,17 @@ def _(product: TriMesh, steps: int) -> TriMesh:
 
 
 @started_elsewhere.register
+def _(product: TetMesh, steps: int) -> TetMesh:
+    count = len(product.nodes)
+    return replace(
+        product,
+        nodes=frozen_floats(np.roll(product.nodes, -steps, axis=0)),
+        elements=frozen_ints(np.roll((product.elements - steps) % count, steps, axis=0)),
+        faces=frozen_ints((product.faces - steps) % count),
+    )
+
+
+@started_elsewhere.register
 def _(product: Segmentation, steps: int) -> Segmentation:
     """Begin each slice's crop at another pixel."""
 
@@ -143,6 +165,9 @@ def emptied(product: Any) -> Any:
         return replace(product, shells=())
     if isinstance(product, Segmentation):
         return replace(product, field_of=lambda k, picture: _without_body(product.field_of(k, picture)))
+    if isinstance(product, TetMesh):
+        nothing = frozen_ints(np.empty((0, 10)))
+        return replace(product, elements=nothing, faces=nothing[:, :6], groups=nothing[:, 0])
     return replace(product, vertices=frozen_floats(np.empty((0, 3))), faces=frozen_ints(np.empty((0, 3))))
 
 

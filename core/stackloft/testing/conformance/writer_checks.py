@@ -20,9 +20,12 @@ from typing import Any
 import numpy as np
 
 from stackloft.geometry.closed_mesh import mesh_integrals, unmatched_edges
+from stackloft.geometry.tet_boundary import boundary_faces
+from stackloft.geometry.tet_integrals import elements_volume, faces_area
 from stackloft.model.arrays import frozen_floats, frozen_ints
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.measurement import Figure, Measurement, Result, SectionRow
+from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.registry.options_model import validate
 from stackloft.testing.conformance import ellipsoids
@@ -39,7 +42,8 @@ class WriterCase:
 
     writer: type[Any]
     read: Callable[[Path], Any] | None = None
-    """From a file to what `expected` gives; for surfaces a TriMesh. None: by meshio, where it can."""
+    """From a file to what `expected` gives; for surfaces a TriMesh, for tetrahedra a TetMesh. None: by
+    meshio, where it can."""
     expected: Callable[[Any], Any] | None = None
     """From the product to what `read` must give; needed for products other than solids and surfaces."""
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -59,7 +63,9 @@ class WriterCase:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"written{self.writer.suffixes[0]}"
             path.write_bytes(content)
-            return read_surface(path) if self.read is None else self.read(path)
+            if self.read is not None:
+                return self.read(path)
+            return read_tets(path) if TetMesh in self.writer.accepts else read_surface(path)
 
     def products(self) -> list[Any]:
         """Return a product of each type that the writer accepts and the kit can make."""
@@ -84,17 +90,30 @@ def result() -> Result:
 
 def read_surface(path: Path) -> TriMesh:
     """Return the triangles of a file in a format that meshio knows; equal vertices are joined."""
+    mesh = _by_meshio(path)
+    corners = np.concatenate([block.data for block in mesh.cells if block.type == "triangle"])
+    vertices, index = np.unique(mesh.points[corners.ravel()], axis=0, return_inverse=True)
+    return TriMesh(frozen_floats(vertices), frozen_ints(index.reshape(-1, 3)))
+
+
+def _by_meshio(path: Path) -> Any:
     import meshio  # noqa: PLC0415 - slow to import
 
     try:
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-            mesh = meshio.read(path)
+            return meshio.read(path)
     except (Exception, SystemExit) as error:
         message = f"meshio cannot read the {path.suffix} file: {type(error).__name__} {error}"
         raise NonconformingError(message) from error
-    corners = np.concatenate([block.data for block in mesh.cells if block.type == "triangle"])
-    vertices, index = np.unique(mesh.points[corners.ravel()], axis=0, return_inverse=True)
-    return TriMesh(frozen_floats(vertices), frozen_ints(index.reshape(-1, 3)))
+
+
+def read_tets(path: Path) -> TetMesh:
+    """Return the tetrahedra of a file in a format that meshio knows; the boundary is found from them."""
+    mesh = _by_meshio(path)
+    elements = next((block.data for block in mesh.cells if block.type in {"tetra", "tetra10"}), None)
+    must(elements is not None, f"meshio finds no tetrahedra in the {path.suffix} file")
+    whole = frozen_ints(np.asarray(elements))
+    return TetMesh(frozen_floats(mesh.points), whole, frozen_ints(boundary_faces(whole)))
 
 
 def shape(case: WriterCase) -> None:
@@ -130,10 +149,10 @@ def reads_back(case: WriterCase) -> None:
 def far_and_small(case: WriterCase) -> None:
     """Check the same of surfaces a thousandth and a thousand times as large."""
     for product in case.products():
-        if isinstance(product, (LoftedSolid, TriMesh)):
+        if isinstance(product, (LoftedSolid, TriMesh, TetMesh)):
             for s in (1e-3, 1e3):
                 scaled = transformed(product, s * np.eye(3), np.zeros(3))
-                if isinstance(scaled, TriMesh):  # a solid's tolerance is in mm, whatever its size
+                if isinstance(scaled, (TriMesh, TetMesh)):  # a solid's tolerance is in mm, whatever its size
                     _must_read_back(case, scaled, f" scaled by {s:g}")
 
 
@@ -156,6 +175,12 @@ def refusals(case: WriterCase) -> None:
             vertices[3] = np.nan
             spoilt = replace(product, vertices=frozen_floats(vertices))
             must_refuse(lambda spoilt=spoilt: case.write(spoilt), "a vertex that is not finite")  # type: ignore[misc]
+        if isinstance(product, TetMesh):
+            must_refuse(lambda mesh=product: case.write(emptied(mesh)), "a mesh without elements")  # type: ignore[misc]
+            nodes = product.nodes.copy()
+            nodes[3] = np.nan
+            odd = replace(product, nodes=frozen_floats(nodes))
+            must_refuse(lambda odd=odd: case.write(odd), "a node that is not finite")  # type: ignore[misc]
 
 
 def no_side_effects(case: WriterCase) -> None:
@@ -170,12 +195,16 @@ def no_side_effects(case: WriterCase) -> None:
 def _must_read_back(case: WriterCase, product: Any, how: str) -> None:
     what = f"a {type(product).__name__}{how}"
     content = case.write(product)
-    if not isinstance(product, (LoftedSolid, TriMesh)) or case.expected is not None:
+    if not isinstance(product, (LoftedSolid, TriMesh, TetMesh)) or case.expected is not None:
         must(case.read is not None and case.expected is not None, "the case tells no `read` and `expected`")
         back, wanted = case.read_back(content), (case.expected or (lambda x: x))(product)
         must(back == wanted, f"{what} comes back as {str(back)[:80]}, written was {str(wanted)[:80]}")
         return
     back = case.read_back(content)
+    if isinstance(product, TetMesh):
+        must(isinstance(back, TetMesh), f"{what} comes back as {type(back).__name__}, not as a TetMesh")
+        must_match_tets(case, back, product, what)
+        return
     must(isinstance(back, TriMesh), f"{what} comes back as {type(back).__name__}, not as a TriMesh")
     loose = unmatched_edges(back.faces)
     must(loose == 0, f"{what} comes back with {loose} edges open")
@@ -194,6 +223,22 @@ def _must_match(case: WriterCase, back: TriMesh, product: Any, what: str) -> Non
         found, said = corner(back.vertices, axis=0), corner(wanted.vertices, axis=0)
         off = float(np.abs(found - said).max())
         must(off <= slack * size, f"{what} comes back with its {name} corner {off:.3g} mm off")
+
+
+def must_match_tets(case: WriterCase, back: TetMesh, product: TetMesh, what: str) -> None:
+    """Check order, count, volume, area and place of tetrahedra that were read back."""
+    must(back.order == product.order, f"{what} comes back of order {back.order}, written was {product.order}")
+    must(len(back.elements) == len(product.elements), f"{what} comes back with {len(back.elements)} elements")
+    found, said = (
+        (elements_volume(mesh.nodes, mesh.elements, 4), faces_area(mesh.nodes, mesh.faces, 4))
+        for mesh in (back, product)
+    )
+    for name, one, other in zip(("volume", "area"), found, said, strict=True):
+        change = one / other - 1.0
+        must(abs(change) <= case.tolerance, f"{what} comes back with {name} changed by {change:.1e}")
+    size = float(np.abs(product.nodes).max())
+    off = float(np.abs(back.nodes.mean(axis=0) - product.nodes.mean(axis=0)).max())
+    must(off <= case.tolerance * size, f"{what} comes back {off:.3g} mm off")
 
 
 def _figures(mesh: TriMesh) -> tuple[float, float]:
