@@ -64,9 +64,12 @@ def test_the_table_reads_at_a_glance(run_folder):
     assert run.stderr == "", "no progress where nobody watches"
 
 
+PICTURES = ("overview.png", "figure_slice.png", "views.png")
+
+
 def test_the_folder_holds_every_file_whole_and_nothing_else(run_folder):
     out, run = run_folder
-    names = {"measurement.json", "recipe.toml", "sections.csv", "overview.png", "solid.stl", "solid.ply"}
+    names = {"measurement.json", "recipe.toml", "sections.csv", *PICTURES, "solid.stl", "solid.ply"}
     assert {path.name for path in out.iterdir()} == names
     for name in names:
         assert str(out / name) in run.stdout
@@ -83,8 +86,30 @@ def test_the_files_agree_with_each_other(run_folder):
         a, b, c = (mesh.points[mesh.cells_dict["triangle"][:, k]].astype(float) for k in range(3))
         volume = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
         assert volume == pytest.approx(body["volume"]["value"], rel=5e-3)
-    with Image.open(out / "overview.png") as picture:
-        assert picture.size[0] > 3 * 130
+    for name in PICTURES:
+        with Image.open(out / name) as picture:
+            assert picture.size[0] > 3 * 130
+            assert len(picture.convert("RGB").getcolors(1 << 24)) > 50, f"{name} shows something"
+
+
+def test_a_scan_has_its_pictures_too_and_a_method_without_a_solid_no_views(stackloft, tmp_path):
+    z, y, x = np.mgrid[:12, :48, :64]
+    ball = (x - 30) ** 2 + (y - 22) ** 2 + (2 * z - 11) ** 2 < 100
+    np.savez(tmp_path / "ball.npz", ball * 1000.0 - 400, spacing=[2.0, 1.0, 1.0])
+    arguments = ("measure", tmp_path / "ball.npz", "--method", "cavalieri", "--figure-slice", "6", "--quiet")
+    run = stackloft(*arguments, "--out", tmp_path / "out")
+    assert run.returncode == 0, run.stderr
+    pictures = {path.name for path in (tmp_path / "out").glob("*.png")}
+    assert pictures == {"overview.png", "figure_slice.png"}
+
+
+def test_a_figure_of_a_slice_that_is_not_there_is_wrong_usage(stackloft, ball_folder, tmp_path):
+    run = stackloft("measure", ball_folder, "--out", tmp_path / "out", "--figure-slice", "10")
+    assert run.returncode == 2
+    assert "--figure-slice: no such slice; found: 10; expected: a number from 1 to 9" in run.stderr
+    assert list((tmp_path / "out").iterdir()) == []
+    alone = stackloft("measure", ball_folder, "--figure-slice", "2")
+    assert (alone.returncode, "give --out DIR" in alone.stderr) == (2, True)
 
 
 def test_the_recipe_run_again_gives_the_same_figures_to_the_bit(stackloft, ball_folder, run_folder):

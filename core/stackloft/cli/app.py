@@ -52,6 +52,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     json: a.Json = False,
     quiet: a.Quiet = False,
     write: a.Write = None,
+    figure_slice: a.FigureSlice = None,
     units: a.TableUnits = None,
     pixel_size: a.PixelSize = None,
     reference: a.ReferenceFlag = None,
@@ -95,7 +96,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     request = request_of(
         source, reader=reader, segmenter=segmenter, method=method, flags=flags, settings=own, recipe=recipe
     )
-    run(request, Output(out, a.names_of(write), writers, json, quiet, units and units.value))
+    run(request, Output(out, a.names_of(write), writers, json, quiet, units and units.value, figure_slice))
 
 
 @app.command()

@@ -33,6 +33,14 @@ Write = Annotated[
     str | None,
     typer.Option("--write", metavar="NAME,…", help="Also write the solid into --out: stl, ply."),
 ]
+FigureSlice = Annotated[
+    str | None,
+    typer.Option(
+        "--figure-slice",
+        metavar="N|NAME",
+        help="Slice that --out shows step by step, from 1.  [default: the largest section]",
+    ),
+]
 ShownUnits = Annotated[Units, typer.Option("--units", help="Unit of the table.")]
 TableUnits = Annotated[
     Units | None, typer.Option("--units", help="Unit of the table.  [default: stack.toml's, or cm]")

@@ -11,6 +11,7 @@ from typing import Any
 from stackloft.cli.progress import progress_display
 from stackloft.cli.result_table import quiet_lines, show_result
 from stackloft.cli.screen import console
+from stackloft.contracts.sink import Sink
 from stackloft.contracts.stack_file import load_stack_file
 from stackloft.model.errors import UsageError
 from stackloft.pipeline.every_object import measure_objects
@@ -18,6 +19,7 @@ from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.recipe_file import load_recipe
 from stackloft.pipeline.request import MeasureRequest
 from stackloft.report.chosen_writer import ChosenWriter, solid_writers
+from stackloft.report.figure_sink import FigureSink
 from stackloft.report.run_folder import RunFolder
 from stackloft.report.thumbnails import ThumbnailSink
 from stackloft.report.whole_file import writable_folder
@@ -73,6 +75,8 @@ class Output:
     quiet: bool
     unit: str | None
     """Unit of the table; None: what ``stack.toml`` says, or cm."""
+    figure_slice: str | None = None
+    """Number or name of the slice that is shown step by step; None: the largest section."""
 
 
 def run(request: MeasureRequest, output: Output) -> None:
@@ -85,7 +89,7 @@ def run(request: MeasureRequest, output: Output) -> None:
     """
     folder = _folder(output, request.source)
     with progress_display(quiet=output.quiet) as progress:
-        outcome = measure_objects(request, progress=progress, sinks=[ThumbnailSink()] if folder else [])
+        outcome = measure_objects(request, progress=progress, sinks=_sinks(output))
         files: list[Path] = []
         if folder is not None:
             progress.begin("write", None)
@@ -107,9 +111,15 @@ def _folder(output: Output, source: Path) -> RunFolder | None:
             )
         writers = solid_writers(output.solids, output.writer_settings)
         return RunFolder(writable_folder(output.folder), writers)
-    if output.solids:
-        raise UsageError("needs a folder", where="--write", fix="give --out DIR as well")
+    for flag, given in (("--write", output.solids), ("--figure-slice", output.figure_slice)):
+        if given:
+            raise UsageError("needs a folder", where=flag, fix="give --out DIR as well")
     return None
+
+
+def _sinks(output: Output) -> list[Sink]:
+    """Return what keeps pictures of the slices for the folder; nothing without one."""
+    return [] if output.folder is None else [ThumbnailSink(), FigureSink(output.figure_slice)]
 
 
 def _unit_of(source: Path) -> str:

@@ -4,8 +4,9 @@
 
     +--------+ +--------+ +--------+
     |  (  )  | | (    ) | |  (  )  |     contour as measured, thin and coloured
+    | --     | | --     | | --     |     scale bar
     +--------+ +--------+ +--------+
-     cut_01     cut_02     cut_03        file
+     1 cut_01   2 cut_02   3 cut_03      number and file
      z 0 mm     z 5.6 mm   z 11.1 mm     position
 
 All slices are drawn at one scale, so that the body's taper is seen.
@@ -21,10 +22,11 @@ from typing import BinaryIO
 
 import cv2
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.report.sheet import INK, MOUNT, PAPER, draw_scale_bar, font, line_height, shortened
 from stackloft.report.thumbnails import Rgb, Thumbnail, side_for
 
 COLOURS = {
@@ -37,9 +39,8 @@ COLOURS = {
 """The contour's colour is the one of these that stands out best from what lies under the contours."""
 
 _GAP = 12
-_PAPER = (250, 250, 250)
-_MOUNT = (232, 232, 232)
-_INK = (40, 40, 40)
+BAR = 0.3
+"""Part of a cell's width that the scale bar takes at most; it is the same in all."""
 _FRACTION_BITS = 4  # cv2 draws at a sixteenth of a pixel
 _ASPECT = 1.5
 
@@ -65,6 +66,9 @@ def write_overview(contours: ContourStack, thumbnails: Sequence[Thumbnail], stre
 class _Cell:
     picture: Rgb
     lines: tuple[str, str]
+    per_mm: float
+    light: bool
+    """Drawn on paper."""
 
 
 def _over_photographs(contours: ContourStack, thumbnails: Sequence[Thumbnail]) -> list[_Cell]:
@@ -73,7 +77,7 @@ def _over_photographs(contours: ContourStack, thumbnails: Sequence[Thumbnail]) -
     per_mm = side / max(max(small.extent) for small in thumbnails)
     pairs = [(small.scaled(per_mm), sections.get((small.name, round(small.z, 9)))) for small in thumbnails]
     colour = _standing_out([(small, section) for small, section in pairs if section is not None])
-    return [_cell(small, section, colour) for small, section in pairs]
+    return [_cell(small, section, colour, number) for number, (small, section) in enumerate(pairs, start=1)]
 
 
 def _on_paper(contours: ContourStack) -> list[_Cell]:
@@ -84,20 +88,32 @@ def _on_paper(contours: ContourStack) -> list[_Cell]:
     width, height = (math.ceil(extent * per_mm + 0.1 * side) for extent in high - low)
     origin = tuple(0.05 * side - low * per_mm)
     paper = np.full((height, width, 3), 255, dtype=np.uint8)
+    small = [
+        Thumbnail(section.name, section.z, paper, (per_mm, per_mm), origin) for section in contours.sections
+    ]
+    pairs = zip(small, contours.sections, strict=True)
     return [
-        _cell(Thumbnail(section.name, section.z, paper, (per_mm, per_mm), origin), section, COLOURS["blue"])
-        for section in contours.sections
+        _cell(one, section, COLOURS["blue"], number, light=True)
+        for number, (one, section) in enumerate(pairs, start=1)
     ]
 
 
-def _cell(small: Thumbnail, section: Section | None, colour: tuple[int, int, int]) -> _Cell:
+def _cell(
+    small: Thumbnail,
+    section: Section | None,
+    colour: tuple[int, int, int],
+    number: int,
+    *,
+    light: bool = False,
+) -> _Cell:
     picture = small.picture.copy()
     for loop in section.loops if section is not None else ():
         at = np.round(_pixels(loop, small) * (1 << _FRACTION_BITS)).astype(np.int32)
         cv2.polylines(picture, [at.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA, _FRACTION_BITS)
     unused = "" if section is not None else "  (not used)"
     position = f"{small.z:.2f}".rstrip("0").rstrip(".")
-    return _Cell(picture, (small.name, f"z {position} mm{unused}"))
+    lines = (f"{number}  {small.name}", f"z {position} mm{unused}")
+    return _Cell(picture, lines, small.per_mm[0], light)
 
 
 def _pixels(loop: Loop, small: Thumbnail) -> FloatArray:
@@ -126,29 +142,22 @@ def _grid(cells: Sequence[_Cell]) -> Image.Image:
     """Return the cells side by side on a sheet about half as wide again as high, each with its label."""
     width = max(cell.picture.shape[1] for cell in cells)
     height = max(cell.picture.shape[0] for cell in cells)
-    font = ImageFont.load_default(size=max(11, width // 24))
-    line = math.ceil(font.getbbox("Åg")[3]) + 2
+    face = font(max(11, width // 24))
+    line = line_height(face)
+    bar = min(BAR * width, 0.7 * min(cell.picture.shape[1] for cell in cells))
     pitch = width + _GAP, height + 2 * line + _GAP
     columns = max(1, min(len(cells), round(math.sqrt(_ASPECT * len(cells) * pitch[1] / pitch[0]))))
     rows = math.ceil(len(cells) / columns)
-    sheet = Image.new("RGB", (columns * pitch[0] + _GAP, rows * pitch[1] + _GAP), _PAPER)
+    sheet = Image.new("RGB", (columns * pitch[0] + _GAP, rows * pitch[1] + _GAP), PAPER)
     draw = ImageDraw.Draw(sheet)
     for number, cell in enumerate(cells):
         left, top = _GAP + number % columns * pitch[0], _GAP + number // columns * pitch[1]
         aside, down = (width - cell.picture.shape[1]) // 2, (height - cell.picture.shape[0]) // 2
-        draw.rectangle((left, top, left + width - 1, top + height - 1), fill=_MOUNT)
+        draw.rectangle((left, top, left + width - 1, top + height - 1), fill=MOUNT)
         sheet.paste(Image.fromarray(cell.picture), (left + aside, top + down))
+        foot = left + aside + 6, top + down + cell.picture.shape[0] - 6
+        draw_scale_bar(draw, foot, cell.per_mm, bar, face, dark=cell.light)
         for row, text in enumerate(cell.lines):
             at = left, top + height + row * line
-            draw.text(at, _shortened(text, font, width), fill=_INK, font=font)
+            draw.text(at, shortened(text, face, width), fill=INK, font=face)
     return sheet
-
-
-def _shortened(text: str, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, width: int) -> str:
-    """Return `text`, its middle left out when it would run into the next cell."""
-    keep = len(text)
-    short = text
-    while font.getbbox(short)[2] > width and keep > 4:
-        keep -= 1
-        short = f"{text[: keep // 2]}…{text[len(text) - keep // 2 :]}"
-    return short

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -78,20 +79,20 @@ class ThumbnailSink:
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:
         """Keep a small copy of where `picture` shows the body."""
-        top, left, bottom, right = _window(section_field, picture.shape)
-        part = picture[top:bottom, left:right]
+        window = window_of(section_field, picture.shape)
+        part = picture[window.top : window.bottom, window.left : window.right]
         rows, columns = part.shape[:2]
         factor = self._side / max(rows, columns)
         size = max(1, round(columns * factor)), max(1, round(rows * factor))
         along = size[0] / columns, size[1] / rows
         row_spacing, column_spacing = self._stack.pixel_spacing[index]
         x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index]
-        from_left, from_top = left + x / column_spacing, top + y / row_spacing
+        from_left, from_top = window.left + x / column_spacing, window.top + y / row_spacing
         self._thumbnails.append(
             Thumbnail(
                 self._stack.names[index],
                 float(self._stack.positions[index]),
-                as_rgb(resized(_resizable(part), size)),
+                as_rgb(resized(resizable(part), size)),
                 (along[0] / column_spacing, along[1] / row_spacing),
                 ((0.5 - from_left) * along[0] - 0.5, (0.5 - from_top) * along[1] - 0.5),
             )
@@ -102,12 +103,21 @@ class ThumbnailSink:
         return tuple(self._thumbnails)
 
 
-def _window(section_field: SectionField, shape: tuple[int, ...]) -> tuple[int, int, int, int]:
-    """Return top, left, bottom, right of the field's window with its surroundings, within the picture."""
+class Window(NamedTuple):
+    """A part of a picture, pixels."""
+
+    top: int
+    left: int
+    bottom: int
+    right: int
+
+
+def window_of(section_field: SectionField, shape: tuple[int, ...]) -> Window:
+    """Return the field's window with its surroundings, within the picture."""
     top, left = section_field.offset
     rows, columns = section_field.values.shape
     above, beside = math.ceil(AROUND * rows), math.ceil(AROUND * columns)
-    return (
+    return Window(
         max(0, top - above),
         max(0, left - beside),
         min(shape[0], top + rows + above),
@@ -127,7 +137,7 @@ def side_for(count: int) -> int:
     return int(min(LARGEST, max(SMALLEST, math.sqrt(TOTAL / max(count, 1)))))
 
 
-def _resizable(picture: Picture) -> Picture:
+def resizable(picture: Picture) -> Picture:
     """Return `picture` in a dtype that cv2 averages: 8 or 16 bit as it is, all else as float32."""
     return (
         picture if picture.dtype in {np.dtype(np.uint8), np.dtype(np.uint16)} else picture.astype(np.float32)
