@@ -14,6 +14,7 @@ Trans. Med. Imaging 9:32).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,7 @@ GRADES = (0.25, 1.0 / 16.0, 1.0 / 64.0)
 """Distances from the change, as fractions of the way to the given section, at which sections are put in."""
 LEAST = 1e-3
 """Loops smaller than this fraction of the box are noise of the interpolation."""
+NEWTON = 6
 SIDES = 160
 """Vertices of a loop that is put in."""
 
@@ -45,22 +47,57 @@ class BetweenField:
     before: FloatArray
     """(rows, columns) mm, positive inside"""
     after: FloatArray
+    area: Callable[[float], float]
+    """mm² that the loops should enclose at t"""
     hollow: bool = False
     """True when the loops bound holes: background within, body around them."""
 
     def at(self, t: float) -> list[FloatArray]:
         """Return the loops a fraction t of the way from one section to the other."""
         field = (1.0 - t) * self.before + t * self.after
+        field = field - level_of_area(field, self.x[1] - self.x[0], self.area(t))
         lines = zero_lines(field, self.x, self.y)
         return [line[::-1] for line in lines] if self.hollow else lines
 
 
-def between(before: list[FloatArray], after: list[FloatArray]) -> BetweenField:
-    """Return the interpolator between the loops (polygons, mm, body on the left) of two sections."""
+def between(
+    before: list[FloatArray], after: list[FloatArray], area: Callable[[float], float]
+) -> BetweenField:
+    """Return the interpolator between the loops of two sections.
+
+    Parameters
+    ----------
+    before, after : lists of (k, 2) arrays
+        Polygons, mm, body on the left.
+    area : callable
+        Area, mm², that the loops should enclose at t. Interpolated distances thin out where a slender part
+        moves sideways; their level is set so that they do not.
+    """
     x, y = plane_grid([*before, *after])
     largest = max([*before, *after], key=lambda p: abs(_area(p)))
     fields = signed_distance(x, y, before), signed_distance(x, y, after)
-    return BetweenField(x, y, *fields, hollow=_area(largest) < 0.0)
+    return BetweenField(x, y, *fields, area, hollow=_area(largest) < 0.0)
+
+
+def level_of_area(field: FloatArray, step: float, area: float) -> float:
+    """Return the level above which a distance field on square cells covers an area.
+
+    Examples
+    --------
+    >>> x = np.arange(-12.0, 12.5, 0.5)
+    >>> field = 10.0 - np.hypot(x, x[:, None])
+    >>> bool(abs(level_of_area(field, 0.5, 81.0 * np.pi) - 1.0) < 0.01)
+    True
+    """
+    level = 0.0
+    for _ in range(NEWTON):
+        height = (field - level) / step
+        covered = float(np.clip(height + 0.5, 0.0, 1.0).sum()) * step**2
+        slope = float((np.abs(height) < 0.5).sum()) * step  # mm² per mm: about the perimeter
+        if slope <= 0.0:
+            break
+        level += float(np.clip((covered - area) / slope, -2.0 * step, 2.0 * step))
+    return level
 
 
 def plane_grid(loops: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -117,7 +154,11 @@ def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
         return []
     below = [low * (1.0 - g) for g in GRADES]
     above = [high + (1.0 - high) * g for g in reversed(GRADES)]
-    return [(t, field.at(t)) for t in (*below, low, high, *above)]
+    levels = [
+        (t, field.at(t), start) for ts, start in ((below, 0.0), ((low, high), None), (above, 1.0)) for t in ts
+    ]
+    sides = {start: _topology(field.at(start)) for start in (0.0, 1.0)}
+    return [(t, loops) for t, loops, start in levels if start is None or _topology(loops) == sides[start]]
 
 
 def _reach(field: BetweenField, start: float, stop: float) -> float:

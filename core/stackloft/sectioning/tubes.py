@@ -12,10 +12,12 @@ r"""Sections of any topology as tubes: runs of loops that go on one to one, and 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from stackloft.geometry.bridge_cut import BridgeCut, Part, cut_bridges
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
@@ -97,10 +99,18 @@ class TubeSet:
 class _Builder:
     """Tubes while levels are added from the first to the last."""
 
-    def __init__(self) -> None:
+    def __init__(self, levels: list[Level]) -> None:
+        real = [level for level in levels if level.section is not None]
+        z = [level.z for level in real]
+        areas = [_covered(level) for level in real]
+        self._areas = PchipInterpolator(z, areas) if len(z) > 1 else None
         self.done: list[TubeOfLoops] = []
         self.joints: list[tuple[FloatArray, ...]] = []
         self.notices: list[Notice] = []
+
+    def area(self, z: float) -> float:
+        """Return the area of all loops at z, mm², from the sections' areas."""
+        return float(self._areas(z)) if self._areas is not None else 0.0
 
     def begin(self, row: Row, end: JointUse | float) -> TubeOfLoops:
         return TubeOfLoops([row], [end])
@@ -155,7 +165,7 @@ def trace_tubes(levels: list[Level]) -> TubeSet:
     InputError
         Neighbouring levels cannot be linked.
     """
-    builder = _Builder()
+    builder = _Builder(levels)
     rows = _rows(levels[0])
     open_tubes = [builder.begin(row, np.inf) for row in rows]
     for before, after in pairwise(levels):
@@ -219,7 +229,7 @@ def _change(
     one, two = _part_level(before, linked.before), _part_level(after, linked.after)
     open_tubes = [tubes[i] for i in linked.before]
     if before.section is not None and after.section is not None:  # else they were put in already
-        put_in = _levels_between(one, two)
+        put_in = _levels_between(one, two, _part_area(builder, before, after, one, two))
         trial = _trial(one, put_in, two)
     else:
         put_in, trial = [], [_joint(one, two)]
@@ -284,9 +294,34 @@ class _Joined:
     """The part that each loop of the other level follows."""
 
 
-def _levels_between(one: Level, two: Level) -> list[Level]:
+def _covered(level: Level) -> float:
+    """Return the area of a level's loops, holes subtracted, mm²."""
+    return float(sum(_area(p) for p in level.polygons))
+
+
+def _part_area(
+    builder: _Builder, before: Level, after: Level, one: Level, two: Level
+) -> Callable[[float], float]:
+    """Return the area of the loops that change, mm², at t in [0, 1] between two sections.
+
+    What all sections' areas say, less the other loops' share.
+    """
+    ends = _covered(one), _covered(two)
+    others = _covered(before) - ends[0], _covered(after) - ends[1]
+    sign = 1.0 if ends[0] + ends[1] > 0.0 else -1.0
+    low, high = sorted(sign * end for end in ends)
+
+    def area(t: float) -> float:
+        whole = builder.area(one.z + t * (two.z - one.z))
+        own = sign * (whole - (1.0 - t) * others[0] - t * others[1])
+        return min(max(own, 0.7 * low), 1.4 * high)
+
+    return area
+
+
+def _levels_between(one: Level, two: Level, area: Callable[[float], float]) -> list[Level]:
     """Return levels put in about the changes of topology."""
-    field = between(list(one.polygons), list(two.polygons))
+    field = between(list(one.polygons), list(two.polygons), area)
     name = f"between {one.name} and {two.name}"
     return [_plain_level(one.z + t * (two.z - one.z), loops, name) for t, loops in change_levels(field)]
 
