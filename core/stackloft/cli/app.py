@@ -133,6 +133,54 @@ def info(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declar
 
 
 @app.command()
+@guarded
+def mesh(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
+    source: a.Source,
+    out: a.MeshOut,
+    mesher: a.Mesher = None,
+    order: a.Order = None,
+    max_element_size: a.MaxElementSize = None,
+    quiet: a.Quiet = False,
+    units: a.ShownUnits = a.Units.CM,
+    pixel_size: a.PixelSize = None,
+    reference: a.ReferenceFlag = None,
+    thickness: a.Thickness = None,
+    positions: a.Positions = None,
+    method: a.Method = None,
+    points: a.Points = None,
+    ends: a.Ends = None,
+    height: a.Height = None,
+    object: a.Object = None,  # noqa: A002 - the flag's own name
+    settings: a.Settings = None,
+    recipe: a.RecipeFile = None,
+    reader: a.Reader = None,
+    segmenter: a.Segmenter = None,
+) -> None:
+    """Export the solid, or tetrahedra in it, for other programs; the format is the file's suffix."""
+    from stackloft.cli.measure import request_of
+    from stackloft.cli.mesh import MeshWish, mesher_settings, run
+    from stackloft.registry import parse_settings
+    from stackloft.report.chosen_writer import split_settings
+
+    flags = {
+        "pixel_size": pixel_size,
+        "reference": reference,
+        "thickness": thickness,
+        "positions": positions,
+        "points": points,
+        "ends": ends,
+        "height": height,
+        "object": object,
+    }
+    writers, rest = split_settings(parse_settings(settings or ()))
+    options, own = mesher_settings(rest, {"order": order, "max_element_size": max_element_size})
+    request = request_of(
+        source, reader=reader, segmenter=segmenter, method=method, flags=flags, settings=own, recipe=recipe
+    )
+    run(request, MeshWish(out, mesher, options, writers, quiet, units.value))
+
+
+@app.command()
 @answering
 def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
     name: a.PhantomName,

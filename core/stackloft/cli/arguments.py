@@ -31,7 +31,11 @@ Out = Annotated[
 ]
 Write = Annotated[
     str | None,
-    typer.Option("--write", metavar="NAME,…", help="Also write the solid into --out: stl, ply."),
+    typer.Option(
+        "--write",
+        metavar="NAME,…",
+        help="Also write the solid into --out: stl, ply, obj; with --method fem vtu, msh, inp, mphtxt.",
+    ),
 ]
 FigureSlice = Annotated[
     str | None,
@@ -119,6 +123,20 @@ Thickness = Annotated[
 Positions = Annotated[
     str | None,
     typer.Option("--positions", metavar="LEN,LEN,…", help="Position of every slice instead."),
+]
+MeshOut = Annotated[
+    Path,
+    typer.Option(
+        "-o", "--out", metavar="FILE", help="STL, PLY, OBJ (surface); VTU, MSH, INP, mphtxt (tetrahedra)."
+    ),
+]
+Mesher = Annotated[
+    str | None,
+    typer.Option("--mesher", metavar="NAME", help="sweep or tetwild.  [default: sweep where it can]"),
+]
+Order = Annotated[int | None, typer.Option("--order", help="Order of the elements.  [default: 2]")]
+MaxElementSize = Annotated[
+    str | None, typer.Option("--max-element-size", metavar="LEN", help="Longest element edge.")
 ]
 Settings = Annotated[
     list[str] | None,

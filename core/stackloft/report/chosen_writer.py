@@ -8,6 +8,7 @@ from typing import Any, BinaryIO
 
 from stackloft.model.errors import InputError, StackloftError, UsageError
 from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.registry import Loaded, catalogue, failure, find, instantiate, validate
 from stackloft.registry.work_notes import at_work
@@ -72,7 +73,7 @@ class ChosenWriter:
             raise InputError(
                 "the method made no solid to write",
                 where=f"--write {self.loaded.name}",
-                fix="measure with --method loft",
+                fix=f"measure with --method {'fem' if kinds == (TetMesh,) else 'loft'}",
             )
         return found
 
@@ -87,7 +88,7 @@ def solid_writers(names: Sequence[str], settings: Settings) -> tuple[ChosenWrite
     """
     chosen = tuple(ChosenWriter.of(name, settings) for name in names)
     for one in chosen:
-        if not any(issubclass(kind, (LoftedSolid, TriMesh)) for kind in one.instance.accepts):
+        if not any(issubclass(kind, (LoftedSolid, TriMesh, TetMesh)) for kind in one.instance.accepts):
             raise UsageError(f"writer {one.loaded.name} writes no solid", where="--write")
     used = {*names, *(f"writer.{name}" for name in names), *(["writer"] if names else [])}
     for key in settings:

@@ -11,7 +11,6 @@ from stackloft.contracts.options import option
 from stackloft.geometry.closed_mesh import mesh_integrals
 from stackloft.geometry.patch_integrals import solid_integrals
 from stackloft.geometry.raised_tets import raised
-from stackloft.geometry.relaxed_tets import relaxed
 from stackloft.geometry.tet_boundary import boundary_faces
 from stackloft.geometry.tet_integrals import elements_volume, faces_area
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
@@ -24,6 +23,7 @@ from stackloft.model.tet_mesh_check import where
 from stackloft.model.tri_mesh import TriMesh
 from stackloft_plugins.meshers.boundary_groups import boundary_groups
 from stackloft_plugins.meshers.boundary_target import BoundaryTarget, boundary_target
+from stackloft_plugins.meshers.settling import settled
 from stackloft_plugins.meshers.sizing_field import sizing_field
 from stackloft_plugins.meshers.snapping import corners_taken, regions_of_faces, snapped
 from stackloft_plugins.meshers.tetwild_call import WHERE, Wanted, check_body, tetrahedra
@@ -181,7 +181,7 @@ def _on_target(
     held = np.zeros(len(nodes), dtype=bool)
     held[rim] = True
     corners = corners_taken(snapped(nodes, flat, regions, target, rim), rim, target)
-    vertices = relaxed(nodes, corners, elements, held)
+    vertices = settled(nodes, corners, elements, held)
     high = raised(elements, len(nodes), order)
     straight = high.straight(vertices)
     faces = boundary_faces(high.elements)
@@ -189,7 +189,7 @@ def _on_target(
     curved = snapped(straight, faces, regions, target, outer[outer >= len(nodes)])
     held = np.zeros(len(straight), dtype=bool)
     held[outer] = True
-    final = relaxed(straight, curved, high.elements, held)
+    final = settled(straight, curved, high.elements, held)
     return _judged(final, high.elements, faces, regions, target, body)
 
 
