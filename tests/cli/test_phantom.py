@@ -66,3 +66,52 @@ def test_wrong_usage_is_one_line(stackloft, tmp_path, arguments, words):
     assert run.returncode == 2, run.stderr
     assert words in run.stderr
     assert run.stderr.count("\n") == 1
+
+
+def test_a_scan_takes_all_that_the_scanner_can_do(stackloft, tmp_path):
+    folder = tmp_path / "scan"
+    text = "--tilt -12 --cosines 7 --origin -100,20.5,3cm --noise 9 --levels -1000,60 --syntax rle --empty 2"
+    text += (
+        " --sections 9 --aspect 3 --fill 0.5 --bias 0.1 --margin 5mm --stretch 1.25 --slab-points 2 --seed 4"
+    )
+    flags = text.split()
+    run = stackloft("phantom", "ellipsoid", "--as", "dicom", "-o", folder, *flags)
+    assert run.returncode == 0, run.stderr
+    facts = json.loads(stackloft("info", folder, "--json").stdout)
+    pitch = facts["pitch"][0]
+    assert facts["slices"] == 13
+    assert facts["pixel_size"]["column"][0] == pytest.approx(pitch / 3)
+    assert facts["pixel_size"]["row"][0] == pytest.approx(1.25 * pitch / 3)
+    assert facts["thickness"][0] == pytest.approx(0.5 * pitch)
+    assert {"tilt", "slab-gaps"} <= {hazard["code"] for hazard in facts["hazards"]}
+    assert abs(facts["affine"][2][0]) > 0.01
+    assert abs(error(stackloft, folder, "volume")) < 0.05
+
+
+@pytest.mark.parametrize("form", ["dicom-seg", "bruker", "rtstruct", "nifti"])
+def test_every_form_of_scan_is_written_and_read(stackloft, tmp_path, form):
+    run = stackloft(
+        "phantom", "cone", "--as", form, "-o", tmp_path / form, "--sections", "6", "--cosines", "3"
+    )
+    assert run.returncode == 0, run.stderr
+    source = tmp_path / form / "scan.nii.gz" if form == "nifti" else tmp_path / form
+    facts = json.loads(stackloft("info", source, "--json").stdout)
+    assert facts["reader"] == {"nifti": "itk"}.get(form, form)
+    assert len(facts["affine"]) == 4
+
+
+@pytest.mark.parametrize(
+    ("flags", "words"),
+    [
+        (["--as", "nrrd", "--tilt", "5"], "nrrd cannot hold a sheared grid"),
+        (["--as", "dicom", "--levels", "5"], "not two grey levels"),
+        (["--as", "dicom", "--origin", "5,6"], "not a place in space"),
+        (["--as", "dicom", "--aspect", "0"], "must be above 0"),
+        (["--as", "dicom", "--syntax", "morse"], "unknown transfer syntax"),
+        (["--as", "photos", "--tilt", "5"], "unknown option tilt"),
+    ],
+)
+def test_what_a_scanner_cannot_do_is_said(stackloft, tmp_path, flags, words):
+    run = stackloft("phantom", "cone", "-o", tmp_path / "x", *flags)
+    assert run.returncode == 2
+    assert words in run.stderr

@@ -202,6 +202,21 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     reference_stays: a.ReferenceStays = False,
     reference_once: a.ReferenceOnce = False,
     tell: a.Tell = None,
+    levels: a.Levels = None,
+    noise: a.Noise = None,
+    bias: a.BiasField = None,
+    fill: a.Fill = None,
+    slab_points: a.SlabPoints = None,
+    tilt: a.Tilt = None,
+    cosines: a.Cosines = None,
+    origin: a.Origin = None,
+    aspect: a.Aspect = None,
+    stretch: a.Stretch = None,
+    empty: a.Empty = None,
+    margin: a.Margin = None,
+    label: a.LabelNumber = None,
+    syntax: a.Syntax = None,
+    multiframe: a.Multiframe = False,
 ) -> None:
     """Write a stack whose volume and area are known, to try things on."""
     from stackloft.cli.phantom import run
@@ -222,6 +237,21 @@ def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "reference_stays": reference_stays or None,
         "reference_once": reference_once or None,
         "tell": tell,
+        "levels": levels,
+        "noise": noise,
+        "bias": bias,
+        "fill": fill,
+        "slab_points": slab_points,
+        "tilt": tilt,
+        "cosines": cosines,
+        "origin": origin,
+        "aspect": aspect,
+        "stretch": stretch,
+        "empty": empty,
+        "margin": margin,
+        "label": label,
+        "syntax": syntax,
+        "multiframe": multiframe or None,
     }
     run(name, form, out, options, parameters or ())
 

@@ -183,7 +183,12 @@ PhantomName = Annotated[
     ),
 ]
 Form = Annotated[
-    str, typer.Option("--as", metavar="FORM", help="photos, contours, dicom, nrrd, nifti or tiff.")
+    str,
+    typer.Option(
+        "--as",
+        metavar="FORM",
+        help="photos, contours, rtstruct; or a scan: dicom, dicom-seg, nrrd, nifti, tiff, bruker.",
+    ),
 ]
 PhantomOut = Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder to fill.")]
 Parameters = Annotated[
@@ -229,3 +234,52 @@ ReferenceOnce = Annotated[bool, typer.Option("--reference-once", help="It is in 
 Tell = Annotated[
     str | None, typer.Option("--tell", metavar="KEY,…", help="What stack.toml says, as in thickness,height.")
 ]
+Levels = Annotated[
+    str | None, typer.Option("--levels", metavar="AIR,BODY", help="Scans: HU.  [default: -1000,40]")
+]
+Noise = Annotated[
+    float | None, typer.Option("--noise", help="Scans: Rician noise, standard deviation in HU.")
+]
+BiasField = Annotated[
+    float | None, typer.Option("--bias", help="Scans: how much dimmer the farthest corner is, as in 0.4.")
+]
+Fill = Annotated[
+    float | None,
+    typer.Option("--fill", help="Scans: slab thickness over pitch; below 1 there are gaps.  [default: 1]"),
+]
+SlabPoints = Annotated[
+    int | None,
+    typer.Option(
+        "--slab-points", help="Scans: planes averaged across a slab (partial volume).  [default: 6]"
+    ),
+]
+Tilt = Annotated[
+    float | None, typer.Option("--tilt", help="Scans: gantry tilt in degrees; dicom, dicom-seg, bruker.")
+]
+Cosines = Annotated[
+    int | None,
+    typer.Option("--cosines", metavar="SEED", help="Scans: slices turned anyhow in patient space."),
+]
+Origin = Annotated[
+    str | None,
+    typer.Option("--origin", metavar="LEN,LEN,LEN", help="Scans: where they lie in patient space."),
+]
+Aspect = Annotated[
+    float | None,
+    typer.Option("--aspect", help="Scans: pitch over pixel size, as in 10; sets the pixel size."),
+]
+Stretch = Annotated[
+    float | None, typer.Option("--stretch", help="Scans: row over column spacing.  [default: 1]")
+]
+Empty = Annotated[int | None, typer.Option("--empty", help="Scans: slices beyond either end.  [default: 1]")]
+Margin = Annotated[str | None, typer.Option("--margin", metavar="LEN", help="Scans: air around the body.")]
+LabelNumber = Annotated[int | None, typer.Option("--label", help="Scans: a label map with this number.")]
+Syntax = Annotated[
+    str | None,
+    typer.Option(
+        "--syntax",
+        metavar="NAME",
+        help="dicom: explicit, implicit, big-endian, deflated, rle, jpeg-ls or jpeg-2000.",
+    ),
+]
+Multiframe = Annotated[bool, typer.Option("--multiframe", help="dicom: one enhanced file for all slices.")]

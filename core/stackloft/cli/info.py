@@ -87,6 +87,7 @@ def _contours(stack: ContourStack) -> dict[str, Any]:
         "positions": stack.positions.tolist(),
         "pitch": _range(np.diff(stack.positions)),
         "thickness": None if stack.thickness is None else [stack.thickness, stack.thickness],
+        "affine": stack.affine.tolist(),
         "loops": [len(section.loops) for section in stack.sections],
         "exact": stack.exact,
         "provenance": dict(stack.provenance),
@@ -140,6 +141,8 @@ def _lines(facts: dict[str, Any], unit: str) -> list[tuple[str, str]]:
             ("positions", _lengths([facts["positions"][0], facts["positions"][-1]], unit, " to ")),
             ("pitch", _lengths(facts["pitch"], unit)),
         ]
+    if "affine" in facts and facts["affine"] != np.eye(4).tolist():
+        lines.append(("in space", _in_space(np.array(facts["affine"]))))
     if facts.get("thickness"):
         lines.append(("thickness", _lengths(facts["thickness"], unit)))
     if "pixels" in facts:
@@ -158,6 +161,12 @@ def _lines(facts: dict[str, Any], unit: str) -> list[tuple[str, str]]:
     lines += [(name, text) for name, text in sources.items() if name not in dict(lines)]
     lines += [(key.replace("_", " "), _said(value)) for key, value in facts.get("hints", {}).items()]
     return lines
+
+
+def _in_space(affine: FloatArray) -> str:
+    """Return the directions of columns, rows and slices in patient space, and where the stack's origin is."""
+    named = zip(("columns", "rows", "slices", "origin"), affine[:3].T, strict=True)
+    return "; ".join(f"{name} {', '.join(f'{x:.4g}' for x in column)}" for name, column in named)
 
 
 def _between(names: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from stackloft.model.errors import UsageError
 from stackloft.model.lengths import parse_length, parse_lengths
 from stackloft.testing.phantoms.camera import Camera
 from stackloft.testing.phantoms.reference_object import ReferenceObject
+from stackloft.testing.phantoms.scans import WRITERS
 from stackloft.testing.phantoms.writing import write_phantom
 
 
@@ -35,7 +36,10 @@ def run(name: str, form: str, folder: Path, options: Mapping[str, Any], paramete
         An unknown name, form, option or parameter, or a folder that cannot be written.
     """
     chosen = {key: value for key, value in options.items() if value is not None}
-    files = write_phantom(name, form, folder, parameters=parameters_of(parameters), **_typed(chosen))
+    typed = _typed(chosen)
+    if form in WRITERS and isinstance(typed.get("placing"), tuple):
+        typed["positions"] = typed.pop("placing")
+    files = write_phantom(name, form, folder, parameters=parameters_of(parameters), **typed)
     known = json.loads(next(path for path in files if path.name == "answer.json").read_text(encoding="utf-8"))
     volume, area = known["volume"]["value"], known["area"]["value"]
     screen = console()
@@ -81,6 +85,12 @@ def _typed(options: Mapping[str, Any]) -> dict[str, Any]:
         typed["rotation"] = _rotation(typed["rotation"])
     if "placing" in typed and typed["placing"] not in {"mid", "faces"}:
         typed["placing"] = parse_lengths(typed["placing"], "--placing")
+    if "origin" in typed:
+        typed["origin"] = _triple(typed["origin"])
+    if "margin" in typed:
+        typed["margin"] = parse_length(typed["margin"], "--margin")
+    if "levels" in typed:
+        typed["levels"] = _levels(typed["levels"])
     if "camera" in typed:
         typed["camera"] = Camera.parse(typed["camera"])
     typed |= _reference(typed)
@@ -114,3 +124,22 @@ def _rotation(text: str) -> int | tuple[float, ...]:
         raise UsageError(
             "not a rotation", where="--rotation", found=repr(text), expected="a seed, or x,y,z in degrees"
         ) from None
+
+
+def _triple(text: str) -> tuple[float, ...]:
+    lengths = parse_lengths(text, "--origin")
+    if len(lengths) != 3:
+        raise UsageError("not a place in space", where="--origin", found=repr(text), expected="LEN,LEN,LEN")
+    return lengths
+
+
+def _levels(text: str) -> tuple[float, ...]:
+    try:
+        levels = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        levels = ()
+    if len(levels) != 2 or levels[0] == levels[1]:
+        raise UsageError(
+            "not two grey levels", where="--levels", found=repr(text), expected="AIR,BODY, as -1000,40"
+        )
+    return levels

@@ -60,6 +60,8 @@ class Scans:
     """mm: the slices' middles instead of `sections` and `empty`; DICOM only when they are uneven."""
     pixel_size: float = 0.6
     """mm, along a row"""
+    aspect: float | None = None
+    """Pitch over the pixel's side, as 10: wins over `pixel_size`."""
     stretch: float = 1.0
     """Row spacing over column spacing."""
     fill: float = 1.0
@@ -90,6 +92,10 @@ class Scans:
     """DICOM: one enhanced file instead of one file for each slice."""
 
     def __post_init__(self) -> None:
+        for name in ("pixel_size", "aspect", "stretch", "fill"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise UsageError("must be above 0", where=name, found=f"{value:g}")
         if self.form not in WRITERS:
             raise UsageError("unknown form", where="form", found=self.form, expected=", ".join(WRITERS))
         if self.form not in SHEARED and self.tilt:
@@ -115,7 +121,8 @@ class Scans:
     def volume(self, phantom: Phantom) -> ScanVolume:
         """Return the scan before it is written."""
         positions, pitch = self._slices(phantom)
-        spacing = (self.pixel_size * self.stretch, self.pixel_size)
+        side = self.pixel_size if self.aspect is None else pitch / self.aspect
+        spacing = (side * self.stretch, side)
         grid = scan_grid(phantom, positions, self.fill * pitch, spacing, self.margin, self.tilt)
         slices = tuple(self._grey(phantom, grid, k) for k in range(len(positions)))
         return ScanVolume(

@@ -103,6 +103,7 @@ def write_phantom(
         checked.setdefault("plate", "black" if phantom.name == "apple" else "white")
     if form in WRITERS:
         checked["form"] = form
+        checked.setdefault("seed", seed)
     return FORMS[form](**checked).write(phantom, Path(folder))
 
 
