@@ -32,7 +32,9 @@ def centre_by_series(fourier):
 
 def cooled_sphere(example, elements):
     sphere = phantoms.make("ellipsoid", a=RADIUS, b=RADIUS, c=RADIUS)
-    mesh = Sweep(order=2, elements=elements).mesh(LoftReconstructor().reconstruct(sphere.contour_stack()))
+    mesh = Sweep(order=2, elements=elements, growth=1.5).mesh(
+        LoftReconstructor().reconstruct(sphere.contour_stack())
+    )
     radius = 1e-3 * RADIUS
     fields = example.cooled(mesh, FOURIER * radius**2, 1.0, 1.0, 1.0 / radius, 1.0, 0.0, steps=30)
     centre = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))[None]
@@ -66,14 +68,14 @@ def test_scikit_fem_finds_our_volume_and_area(example):
 @pytest.mark.prove
 def test_the_sphere_at_three_times_and_the_piece_of_the_page(example, proof, tmp_path):
     exact, rows = centre_by_series(FOURIER), []
-    for elements in (500, 1500, 5000):
+    for elements in (800, 2000, 5000):
         mesh, found = cooled_sphere(example, elements)
         off = 100 * (found / exact - 1)
         rows += [
             (len(mesh.elements), time, f"{value:.6f}", f"{true:.6f}", f"{error:+.4f}")
             for time, value, true, error in zip(FOURIER, found, exact, off, strict=True)
         ]
-        assert elements < 1500 or abs(off).max() < 0.2
+        assert abs(off).max() < 0.2
     proof(
         "cooling-sphere",
         "Transient cooling of a sphere, Biot 1, order 2: temperature at the centre against the series",

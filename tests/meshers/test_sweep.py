@@ -1,5 +1,7 @@
 """Sweep and fem on lofts of exact sections: exact on plane faces, to their order on curved ones."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -188,3 +190,84 @@ def test_inner_nodes_are_straight_where_they_can_be():
     straight = np.einsum("kc,mcd->mkd", tet_lattice(2) / 2, mesh.nodes[mesh.elements[:, :4]])
     off = np.linalg.norm(mesh.nodes[mesh.elements] - straight, axis=2)
     assert off[np.isin(mesh.elements, free)].max() < 1e-9
+
+
+@pytest.mark.prove
+def test_the_claims_in_figures(proof):
+    rows = []
+    for name, (body, parameters) in ROUND.items():
+        solid = lofted(body, **parameters)
+        for order, most, bound in ((1, 5_000, 2e-2), (2, 5_000, 2e-5), (2, 10_000, 5e-6), (3, 5_000, 2e-6)):
+            start = time.process_time()
+            Sweep(order=order, elements=most).mesh(solid)
+            seconds = time.process_time() - start
+            volume, area, mesh = errors(solid, order=order, elements=most)
+            validity = mesh.validity()
+            rows.append(
+                (
+                    name,
+                    order,
+                    len(mesh.elements),
+                    f"{volume:.1e}",
+                    f"{area:.1e}",
+                    f"{bound:.0e}",
+                    validity.inverted,
+                    f"{validity.min_scaled_jacobian:.3f}",
+                    f"{seconds:.2f}",
+                    "",
+                )
+            )
+            assert max(volume, area) < bound
+            assert validity.inverted == 0
+        for sections, points in ((5, 12), (7, 17)):
+            coarse = lofted(body, sections=sections, points=points, **parameters)
+            found = halvings(coarse, 2, (1, 2, 4, 8))
+            observed = np.log2(found[:-1, 0] / found[1:, 0])
+            what = f"{name}, {sections} sections, {points} points"
+            rows += [
+                (what, 2, int(count), f"{-volume:.1e}", f"{-area:.1e}", "", "", "", "", order)
+                for (volume, area, count), order in zip(
+                    found, ["", *(f"{x:.2f}" for x in observed)], strict=True
+                )
+            ]
+            assert ((observed > 3.5) & (observed < 4.5)).all()
+    for name, polygon in (
+        ("box", np.array([[0.0, 0], [30, 0], [30, 20], [0, 20]])),
+        ("L-block", L_SHAPE),
+        ("prism", np.array([[0.0, 0], [30, 0], [0, 40]])),
+    ):
+        for order in (1, 2, 3):
+            volume, area, mesh = errors(flat_ended(polygon, [0.0, 13.0, 40.0], 0.3), order=order)
+            least = mesh.validity().min_scaled_jacobian
+            rows.append(
+                (
+                    name,
+                    order,
+                    len(mesh.elements),
+                    f"{volume:.1e}",
+                    f"{area:.1e}",
+                    "1e-10",
+                    0,
+                    f"{least:.3f}",
+                    "",
+                    "",
+                )
+            )
+            assert max(volume, area) < 1e-10
+    proof(
+        "fem-sweep",
+        "Sweep and fem against the loft that was meshed: relative errors, and the observed order of V",
+        (
+            "loft of",
+            "order",
+            "elements",
+            "V error",
+            "S error",
+            "bound",
+            "inverted",
+            "smallest scaled Jacobian",
+            "CPU seconds",
+            "order of V",
+        ),
+        rows,
+    )
