@@ -72,7 +72,9 @@ def _mean_profile(grey: Grey, edge: Edge, distance: FloatArray) -> FloatArray | 
     inside = ((at >= 0) & (at <= [columns - 1, rows - 1])).all(axis=(1, 2))
     if inside.sum() < 0.5 * len(points):
         return None
-    seen = cv2.remap(grey.astype(np.float32), at[inside, :, 0], at[inside, :, 1], cv2.INTER_LINEAR)
+    seen = cv2.remap(
+        grey.astype(np.float32, copy=False), at[inside, :, 0], at[inside, :, 1], cv2.INTER_LINEAR
+    )
     ordered = np.sort(seen, axis=0)
     quarter = len(ordered) // 4
     return np.asarray(ordered[quarter : len(ordered) - quarter].mean(axis=0, dtype=np.float64))
@@ -103,7 +105,7 @@ def _onto_level(grey: Grey, level: float, pixels: FloatArray, normals: FloatArra
     """Return the pixels moved along their normals to where the grey level crosses `level`."""
     t = np.linspace(-2.0, 3.0, 41)
     at = (pixels[:, None, :] + t[None, :, None] * normals[:, None, :]).astype(np.float32)
-    seen = cv2.remap(grey.astype(np.float32), at[..., 0], at[..., 1], cv2.INTER_LINEAR)
+    seen = cv2.remap(grey.astype(np.float32, copy=False), at[..., 0], at[..., 1], cv2.INTER_LINEAR)
     below = seen < level
     first = np.maximum(below.argmax(axis=1), 1)
     line = np.arange(len(pixels))

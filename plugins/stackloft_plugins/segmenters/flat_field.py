@@ -9,9 +9,11 @@ needs nothing: the body's edge stands far above it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft_plugins.segmenters.body_window import Mask
@@ -39,18 +41,26 @@ class Light:
     shape: tuple[int, int]
     """(rows, columns) of the whole picture."""
 
-    def flattened(self, grey: Grey, window: tuple[slice, slice]) -> Grey:
-        """Return grey levels of a window of the picture as they would be under even light."""
+    def flattened(self, grey: Grey, window: tuple[slice, slice], sign: float = 1.0) -> Grey:
+        """Return `sign` times the grey levels of a window of the picture, as under even light."""
         rows = np.arange(self.shape[0])[window[0]]
         columns = np.arange(self.shape[1])[window[1]]
-        return np.asarray(grey / self.at(rows, columns), dtype=np.float32)
+        light = self.at(rows, columns, np.float32)
+        return np.asarray(cv2.divide(np.ascontiguousarray(grey), light, scale=sign), dtype=np.float32)
 
-    def at(self, rows: FloatArray | IntArray, columns: FloatArray | IntArray) -> FloatArray:
-        """Return the brightness at rows × columns."""
-        y = (2.0 * rows / max(self.shape[0] - 1, 1) - 1.0)[:, None]
-        x = (2.0 * columns / max(self.shape[1] - 1, 1) - 1.0)[None, :]
+    def at(
+        self,
+        rows: FloatArray | IntArray,
+        columns: FloatArray | IntArray,
+        dtype: type[np.floating[Any]] = np.float64,
+    ) -> NDArray[np.floating[Any]]:
+        """Return the brightness at rows × columns, as one product of two thin matrices."""
+        y = 2.0 * rows / max(self.shape[0] - 1, 1) - 1.0
+        x = 2.0 * columns / max(self.shape[1] - 1, 1) - 1.0
         c = self.coefficients
-        return np.asarray(c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y)
+        down = np.stack([c[0] + c[2] * y + c[5] * y * y, c[1] + c[4] * y, np.ones_like(y)], axis=1)
+        along = np.stack([np.ones_like(x), x, c[3] * x * x])
+        return np.asarray(down.astype(dtype) @ along.astype(dtype))
 
 
 def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Light | None:
@@ -102,7 +112,11 @@ def _robust_fit(terms: FloatArray, value: FloatArray) -> FloatArray | None:
     kept = np.ones(len(value), dtype=bool)
     coefficients: FloatArray = np.zeros(terms.shape[1])
     for _ in range(_ROUNDS):
-        coefficients = np.asarray(np.linalg.lstsq(terms[kept], value[kept], rcond=None)[0], np.float64)
+        used = terms[kept]  # normal equations: six terms within -1 to 1 are well conditioned
+        try:
+            coefficients = np.asarray(np.linalg.solve(used.T @ used, used.T @ value[kept]), np.float64)
+        except np.linalg.LinAlgError:
+            return None
         off = np.abs(value - terms @ coefficients)
         kept = off <= max(_OUTLIER * 1.4826 * float(np.median(off)), 1.0)
         if kept.mean() < 0.5:

@@ -22,6 +22,7 @@ VDI/VDE 2630-1.2 "ISO 50 %".)
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -103,11 +104,12 @@ def half_way_edge(grey: Grey, level: float) -> Edge | None:
 
 def edge_at(grey: Grey, level: float) -> Edge | None:
     """Return what lies on either side of the boundary of the largest object above `level`."""
-    mask = main_body((grey > level).astype(np.uint8))
-    inner, outer = inside_band(mask), outside_band(mask)
-    if not inner.any() or not outer.any():
+    mask = main_body((grey > level).view(np.uint8))
+    levels = grey.ravel()
+    within = levels[np.flatnonzero(inside_band(mask))]
+    beyond = levels[np.flatnonzero(outside_band(mask))]
+    if not len(within) or not len(beyond):
         return None
-    within, beyond = grey[inner], grey[outer]
     background = _middle_mean(beyond)
     spread = 1.4826 * float(np.median(np.abs(beyond - background)))
     return Edge(_middle_mean(within), background, spread, mask)
@@ -126,13 +128,18 @@ def inside_band(mask: Mask) -> NDArray[np.bool_]:
         core = cv2.erode(mask, _disc(near), borderType=cv2.BORDER_CONSTANT, borderValue=1) if near else mask
         if core.any():
             deep = cv2.erode(mask, _disc(_FAR), borderType=cv2.BORDER_CONSTANT, borderValue=1)
-            return np.asarray(core > deep)
+            return _without(core, deep)
     return np.zeros(mask.shape, dtype=np.bool_)
 
 
 def outside_band(mask: Mask) -> NDArray[np.bool_]:
     """Return the pixels 1 to 2 px outside."""
-    return np.asarray(cv2.dilate(mask, _disc(_FAR)) > cv2.dilate(mask, _disc(_NEAR)))
+    return _without(cv2.dilate(mask, _disc(_FAR)), cv2.dilate(mask, _disc(_NEAR)))
+
+
+def _without(outer: NDArray[Any], inner: NDArray[Any]) -> NDArray[np.bool_]:
+    """Return where `outer` is 1 and `inner`, which lies within it, is not."""
+    return np.asarray(cv2.bitwise_xor(outer, inner), dtype=np.uint8).view(np.bool_)
 
 
 def _disc(radius: int) -> Mask:

@@ -78,7 +78,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     if window is None:
         raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
     plain = median_filtered(grey_levels(picture[window], rules.channel))
-    grey: Grey = sign * (plain if light is None else light.flattened(plain, window))
+    grey: Grey = sign * plain if light is None else light.flattened(plain, window, sign)
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
     notices = list(_contrast_notices(edge, _full_scale(picture, coarse), name))
