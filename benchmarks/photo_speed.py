@@ -1,9 +1,9 @@
 """Twenty JPEGs of 12 Mpx: measuring them, against merely decoding them one after the other with one library.
 
 Run: ``python benchmarks/photo_speed.py [--slices 20] [--rounds 5] [--reference]``. Each round decodes all
-files with Pillow and then measures them (two threads), in this process, on warm files; the ratio within a round
-is what counts, since the machine's own speed cancels. Imports are done before the clock runs. The largest memory
-is a child's, less that of a child that measures the same pictures at a hundredth of their pixels.
+files with Pillow and then measures them (two threads), in this process, on warm files; the ratio within a
+round is what counts, since the machine's own speed cancels. Imports are done before the clock runs. The
+largest memory is a child's, less that of a child that measures the same pictures ten times smaller.
 """
 
 from __future__ import annotations

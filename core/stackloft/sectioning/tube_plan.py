@@ -84,6 +84,8 @@ def is_single(contours: ContourStack) -> bool:
     """Return True when every section is one loop, the outermost fit for poles: no links needed."""
     if any(len(section.loops) != 1 for section in contours.sections):
         return False
+    if not contours.sections:
+        return True  # nothing to link; who wants a solid of it refuses it by name
     return all(sees_all(contours.sections[k].loops[0].points) for k in (0, -1))
 
 
