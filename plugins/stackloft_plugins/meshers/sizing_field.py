@@ -61,31 +61,33 @@ def sizing_field(
 def curvature(surface: TriMesh, regions: SurfaceRegions) -> FloatArray:
     """Return (n,) about the largest normal curvature at each vertex, 1/mm; sharp edges are left out.
 
-    From each smooth edge: the angle between its two triangles over the distance of their middles; the median
-    of a vertex' three sharpest keeps single slivers from counting.
+    From each smooth edge: the angle between its two triangles over the mean of their heights above it.
     """
     faces = surface.faces
     tail, head = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    apex = np.roll(faces, -2, axis=1).ravel()
     low, high = np.minimum(tail, head), np.maximum(tail, head)
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((owner, high, low))
-    low, high, owner = low[order], high[order], owner[order]
+    low, high, owner, apex = low[order], high[order], owner[order], apex[order]
     first = np.flatnonzero((low[1:] == low[:-1]) & (high[1:] == high[:-1]))
+    first = first[regions.region[owner[first]] == regions.region[owner[first + 1]]]
     one, other = owner[first], owner[first + 1]
-    smooth = regions.region[one] == regions.region[other]
-    first, one, other = first[smooth], one[smooth], other[smooth]
-    middle = surface.vertices[faces].mean(axis=1)
     along = np.clip(np.einsum("ij,ij->i", regions.normals[one], regions.normals[other]), -1.0, 1.0)
-    bend = np.arccos(along) / np.maximum(np.linalg.norm(middle[one] - middle[other], axis=1), 1e-300)
-    vertex, value = np.concatenate([low[first], high[first]]), np.concatenate([bend, bend])
-    order = np.lexsort((-value, vertex))
-    vertex, value = vertex[order], value[order]
-    start = np.flatnonzero(np.concatenate([[True], np.diff(vertex) > 0]))
-    length = np.diff(np.append(start, len(vertex)))
+    start, end = surface.vertices[low[first]], surface.vertices[high[first]]
+    height = sum(_height(surface.vertices[apex[first + k]], start, end) for k in (0, 1))
+    bend = 2.0 * np.arccos(along) / np.maximum(height, 1e-300)
     result = np.zeros(len(surface.vertices))
-    if len(start):
-        result[vertex[start]] = value[start + np.minimum(1, length - 1)]
+    for vertex in (low[first], high[first]):
+        np.maximum.at(result, vertex, bend)
     return result
+
+
+def _height(apex: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return how far each apex is from the line of its edge."""
+    along = end - start
+    area = np.linalg.norm(np.cross(along, apex - start), axis=1)
+    return np.asarray(area / np.maximum(np.linalg.norm(along, axis=1), 1e-300))
 
 
 def _cells(counts: IntArray) -> IntArray:
