@@ -78,6 +78,15 @@ def _worst_interval(between: FloatArray, z: FloatArray, areas: FloatArray) -> in
     return int(np.argmax(np.abs(lofted - straight)))
 
 
+def fold_error(before: str, after: str) -> InputError:
+    """Return the refusal of a skin that folds between two sections."""
+    return InputError(
+        "the loft folds between two sections: they differ too much to be joined",
+        where=f"{before} to {after}",
+        fix="check the order and alignment of the slices, cut thinner slices, or use --method cavalieri",
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class TubeVolume:
     """A tube of a branched loft between the outermost sections."""

@@ -8,9 +8,12 @@ import numpy as np
 
 from stackloft.geometry.curve_stack import fit_curves
 from stackloft.geometry.end_model import distance_to_end
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.ends import End, EndKind
+from stackloft.model.errors import InputError
+from stackloft.model.measurement import EndReport
 from stackloft.sectioning.dense_loops import curve_polygon
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
@@ -68,14 +71,32 @@ class PlannedTube:
         return self.rows[0].hole
 
 
+@dataclass(frozen=True, slots=True)
+class Roof:
+    """A piece closed over its ridge."""
+
+    planned: PlannedEnd
+    area: float
+    """mm², of its outermost section"""
+
+    def report(self) -> EndReport:
+        """Return what is told of it; a ridge's roof holds about 2/3 of area times length."""
+        end = self.planned
+        effect = self.area * (end.longest - end.shortest) / 3.0 if end.guessed else None
+        reason = f"closed over its ridge; {end.reason}"
+        return EndReport(
+            end.kind.value, end.length, reason, end.guessed, effect, 0.0 if end.guessed else None
+        )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class TubePlan:
     """Everything a loft needs to know of a body."""
 
     tubes: tuple[PlannedTube, ...]
     traced: TubeSet
-    roofs: tuple[PlannedEnd, ...]
-    """Ends closed over a ridge."""
+    roofs: tuple[tuple[Roof, ...], tuple[Roof, ...]]
+    """Pieces closed over a ridge at the first and the last end."""
     areas: FloatArray
     """(m,) mm²: the sections' areas, holes by how loops are nested"""
 
@@ -98,8 +119,13 @@ def more_points(contours: ContourStack) -> int:
     return FINER if float((curves.lengths**2 / (4.0 * np.pi * curves.areas)).max()) > LONG else 1
 
 
-def plan_tubes(contours: ContourStack, said: tuple[End, End], height: float | None) -> TubePlan:
-    """Return a stack's tubes and how they end.
+def plan_tubes(
+    contours: ContourStack,
+    said: tuple[End, End],
+    height: float | None,
+    filled: frozenset[int] = frozenset(),
+) -> TubePlan:
+    """Return a stack's tubes and how they end; `filled` as for `trace_tubes`.
 
     Raises
     ------
@@ -115,9 +141,9 @@ def plan_tubes(contours: ContourStack, said: tuple[End, End], height: float | No
         whole = plan_ends(stack, said, height)
     sides = [_Side(contours, said, whole, at_last) for at_last in (False, True)]
     first, last = (_roofs(levels, side) for side in sides)
-    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels])
+    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], filled)
     tubes = tuple(_planned(tube, len(levels), sides) for tube in traced.tubes)
-    return TubePlan(_with_openings(tubes), traced, (*first.planned, *last.planned), areas)
+    return TubePlan(_with_openings(tubes), traced, (tuple(first.planned), tuple(last.planned)), areas)
 
 
 def _levels(contours: ContourStack) -> tuple[list[Level], FloatArray]:
@@ -166,7 +192,7 @@ class _Roofs:
     """Levels beyond the outermost section, outwards, and the ends that they close."""
 
     levels: list[Level]
-    planned: list[PlannedEnd]
+    planned: list[Roof]
 
 
 def _roofs(levels: list[Level], side: _Side) -> _Roofs:
@@ -190,7 +216,7 @@ def _roofs(levels: list[Level], side: _Side) -> _Roofs:
         if end.kind in {EndKind.FACE, EndKind.FLAT}:
             continue
         found += roof_levels(piece, thickness, end.length)
-        planned.append(end)
+        planned.append(Roof(end, sum(polygon_area(p) for p in piece)))
     result = []
     for number, distance in enumerate(sorted({round(d, 12) for d, _ in found}), start=1):
         loops = [p for d, ps in found if round(d, 12) == distance for p in ps]
@@ -331,10 +357,10 @@ def _with_openings(tubes: tuple[PlannedTube, ...]) -> tuple[PlannedTube, ...]:
     return tuple(result)
 
 
-def _around(tubes: tuple[PlannedTube, ...], hole: PlannedTube, k: int) -> PlannedEnd | None:
+def _around(tubes: tuple[PlannedTube, ...], hole: PlannedTube, k: int) -> PlannedEnd:
     """Return the end of the piece around a hole's outer end."""
     row = hole.rows[-1 if k else 0]
-    best, least = hole.ends[k].planned, np.inf
+    best, least = None, np.inf
     for tube in tubes:
         other = tube.rows[-1 if k else 0]
         if tube.hole or not tube.ends[k].outer or other.z != row.z:
@@ -343,4 +369,10 @@ def _around(tubes: tuple[PlannedTube, ...], hole: PlannedTube, k: int) -> Planne
         area = abs(other.loop.signed_area)
         if regions.parents[1] != OUTSIDE and area < least:
             best, least = tube.ends[k].planned, area
+    if best is None or best.kind not in {EndKind.FACE, EndKind.FLAT}:
+        raise InputError(
+            "a hole reaches the end of the stack, but the body around it does not end there in a face",
+            where=row.name,
+            fix="give --ends face or flat:LEN, or cut thinner slices",
+        )
     return best

@@ -32,6 +32,8 @@ SHORT_CHORD = 0.02
 """A cut shorter than this fraction of the loop is drawn as one corner."""
 
 
+FILLING = (0.25, 0.5, 0.75)
+"""Where levels are put in between loops that differ too much to be joined at once."""
 NARROWER = 0.3
 """A bridge near the change of topology is shorter than this fraction of the one on the section."""
 
@@ -99,7 +101,8 @@ class TubeSet:
 class _Builder:
     """Tubes while levels are added from the first to the last."""
 
-    def __init__(self, levels: list[Level]) -> None:
+    def __init__(self, levels: list[Level], filled: frozenset[int]) -> None:
+        self.filled = filled
         real = [level for level in levels if level.section is not None]
         z = [level.z for level in real]
         areas = [_covered(level) for level in real]
@@ -152,20 +155,22 @@ def _area(points: FloatArray) -> float:
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
-def trace_tubes(levels: list[Level]) -> TubeSet:
+def trace_tubes(levels: list[Level], filled: frozenset[int] = frozenset()) -> TubeSet:
     """Return the tubes of a stack of levels.
 
     Parameters
     ----------
     levels : list of Level
         In order along the axis.
+    filled : frozenset of int
+        Sections after which levels are put in even where loops go on one to one.
 
     Raises
     ------
     InputError
         Neighbouring levels cannot be linked.
     """
-    builder = _Builder(levels)
+    builder = _Builder(levels, filled)
     rows = _rows(levels[0])
     open_tubes = [builder.begin(row, np.inf) for row in rows]
     for before, after in pairwise(levels):
@@ -196,6 +201,8 @@ def _advance(builder: _Builder, before: Level, after: Level, tubes: list[TubeOfL
             builder.notices.append(_weak(before, after))
         if linked.plain:
             i, j = linked.before[0], linked.after[0]
+            if before.section in builder.filled:
+                tubes[i].rows += _filling(builder, before, after, i, j)
             tubes[i].rows.append(rows[j])
             found[j] = tubes[i]
         elif not linked.after:
@@ -207,6 +214,20 @@ def _advance(builder: _Builder, before: Level, after: Level, tubes: list[TubeOfL
         else:
             _change(builder, before, after, linked, tubes, found)
     return [tube for tube in found if tube is not None]
+
+
+def _filling(builder: _Builder, before: Level, after: Level, i: int, j: int) -> list[Row]:
+    """Return rows between a loop and its follower, of shapes in between."""
+    one, two = _part_level(before, (i,)), _part_level(after, (j,))
+    field = between(list(one.polygons), list(two.polygons), _part_area(builder, before, after, one, two))
+    rows = []
+    for t in FILLING:
+        loops = field.at(t)
+        if len(loops) != 1:
+            return []
+        z = one.z + t * (two.z - one.z)
+        rows += _rows(_plain_level(z, loops, f"between {one.name} and {two.name}"))
+    return rows
 
 
 def _weak(before: Level, after: Level) -> Notice:

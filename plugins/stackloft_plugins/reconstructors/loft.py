@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from stackloft.contracts.options import option
-from stackloft.geometry.loft_rows import RowEnd, closed_rows
-from stackloft.geometry.patch_integrals import solid_integrals
+from stackloft.geometry.folds import folded_rows
+from stackloft.geometry.loft_rows import closed_rows
 from stackloft.geometry.skin import skin
-from stackloft.model.arrays import BoolArray, FloatArray, read_only
+from stackloft.model.arrays import FloatArray, read_only
 from stackloft.model.contour_stack import ContourStack
-from stackloft.model.ends import End, EndKind
+from stackloft.model.ends import End
 from stackloft.model.lengths import parse_length
 from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
-from stackloft.model.notices import Notice
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import check_against_areas
 from stackloft.sectioning.tube_plan import is_single, more_points
+from stackloft_plugins.reconstructors.end_reports import (
+    end_report,
+    flipped,
+    guess_notices,
+    is_plane,
+    row_end,
+)
 from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
-
-OUTERMOST = 5
-"""Sections lofted when the effect of a guessed end is worked out; those further in do not feel it."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +72,12 @@ class LoftReconstructor:
         sections = equal_points(product, self.points * more_points(product))
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
+        if folded_rows(patches[_inner_rows(patches, planned)]).any():
+            return loft_tubes(product, self.points, self._said(product), self._height(product))
         _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
         shell = Shell(read_only(patches), (_shell_end(planned[0]), _shell_end(planned[1])))
-        notices = (*sections.notices, *_guess_notices(reports))
+        notices = (*sections.notices, *guess_notices(reports))
         return LoftedSolid((shell,), reports, product.affine, notices)
 
     def _said(self, contours: ContourStack) -> tuple[End, End]:
@@ -92,21 +95,19 @@ def _stack_ends(contours: ContourStack, sections: EqualSections) -> StackEnds:
     return StackEnds(contours.positions, sections.curves.areas, contours.kind, contours.thickness)
 
 
-def _is_plane(end: PlannedEnd) -> bool:
-    return end.kind in {EndKind.FACE, EndKind.FLAT}
-
-
 def _shell_end(end: PlannedEnd) -> ShellEnd:
-    return ShellEnd.FACE if _is_plane(end) else ShellEnd.POLE
-
-
-def _row_end(end: PlannedEnd) -> RowEnd:
-    return RowEnd(end.length, pole=not _is_plane(end), smooth=end.kind is EndKind.ROUND)
+    return ShellEnd.FACE if is_plane(end) else ShellEnd.POLE
 
 
 def _patches(sections: EqualSections, planned: tuple[PlannedEnd, PlannedEnd]) -> FloatArray:
-    ends = (_row_end(planned[0]), _row_end(planned[1]))
+    ends = (row_end(planned[0]), row_end(planned[1]))
     return skin(closed_rows(sections.points, sections.corners, ends))
+
+
+def _inner_rows(patches: FloatArray, planned: tuple[PlannedEnd, PlannedEnd]) -> slice:
+    """Return the rows of patches between the first and the last section."""
+    first, last = (int(end.length > 0.0) for end in planned)
+    return slice(first, len(patches) - last)
 
 
 def _self_check(
@@ -116,8 +117,7 @@ def _self_check(
     contours: ContourStack,
 ) -> None:
     """Hold the skin between the outermost sections against their areas."""
-    first, last = (int(end.length > 0.0) for end in planned)
-    rows = slice(first, len(patches) - last)
+    rows = _inner_rows(patches, planned)
     names = tuple(section.name for section in contours.sections)
     check_against_areas(patches, rows, contours.positions, sections.curves.areas, names)
 
@@ -126,45 +126,6 @@ def _reports(
     sections: EqualSections, planned: tuple[PlannedEnd, PlannedEnd], contours: ContourStack
 ) -> tuple[EndReport, EndReport]:
     """Return what is told of each end; a guessed one with what the guess may cost."""
-    first = _report(sections.points, sections.corners, planned[0], contours)
-    last = _report(_flipped(sections.points), sections.corners[::-1], planned[1], contours)
+    first = end_report(sections.points, sections.corners, planned[0], contours.affine)
+    last = end_report(flipped(sections.points), sections.corners[::-1], planned[1], contours.affine)
     return first, last
-
-
-def _flipped(points: FloatArray) -> FloatArray:
-    """Return the stack turned over, so that its last section comes first and z still increases."""
-    return np.asarray(points[::-1, ::-1] * np.array([1.0, 1.0, -1.0]))
-
-
-def _report(points: FloatArray, corners: BoolArray, end: PlannedEnd, contours: ContourStack) -> EndReport:
-    """Return the report of the end beyond points[0], from lofts of the outermost sections alone."""
-    report = EndReport(end.kind.value, end.length, end.reason, end.guessed)
-    if not end.guessed:
-        return report
-    outer = slice(0, min(OUTERMOST, len(points)))
-    figures = []
-    for extreme in end.extremes:
-        rows = closed_rows(points[outer], corners[outer], (_row_end(extreme), RowEnd(0.0, pole=False)))
-        figures.append(
-            solid_integrals(skin(rows), (1.0 if _is_plane(extreme) else None, 1.0), contours.affine, degree=5)
-        )
-    volumes, areas = zip(*figures, strict=True)
-    return replace(
-        report,
-        volume_effect=0.5 * (max(volumes) - min(volumes)),
-        area_effect=0.5 * (max(areas) - min(areas)),
-    )
-
-
-def _guess_notices(reports: tuple[EndReport, EndReport]) -> tuple[Notice, ...]:
-    """Return a notice for each end whose position nobody gave."""
-    return tuple(
-        Notice(
-            "end-guessed",
-            f"the {which} end's position was guessed ({report.kind}, {report.length:.2f} mm beyond the"
-            f" {which} section: {report.reason}); this may cost ±{report.volume_effect or 0.0:.4g} mm³ and"
-            f" ±{report.area_effect or 0.0:.4g} mm²: give --height or --ends",
-        )
-        for which, report in zip(("first", "last"), reports, strict=True)
-        if report.guessed
-    )

@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
+from stackloft.geometry.folds import folded_rows
 from stackloft.geometry.loft_rows import RowEnd, closed_rows
 from stackloft.geometry.skin import skin
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints, read_only
 from stackloft.model.contour_stack import ContourStack, Loop, Section
-from stackloft.model.ends import End, EndKind
+from stackloft.model.ends import End
 from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import Joint, JointRim, LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
-from stackloft.sectioning.ends import PlannedEnd
 from stackloft.sectioning.equal_points import EqualSections, equal_points
-from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas
+from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas, fold_error
 from stackloft.sectioning.tube_plan import (
+    FACE,
     FINER,
     PlannedTube,
+    Roof,
     TubeEnd,
     TubePlan,
     more_points,
     plan_tubes,
     replace_row,
+)
+from stackloft_plugins.reconstructors.end_reports import (
+    end_report,
+    flipped,
+    guess_notices,
+    is_plane,
+    row_end,
 )
 
 HAIR = 1e-3
@@ -64,11 +74,23 @@ def loft_tubes(
             "a solid needs at least 2 sections", found=str(len(contours)),
             fix="give the whole stack, not one slice",
         )  # fmt: skip
-    plan = plan_tubes(contours, said, height)
-    skinned = [_skinned(tube, contours, count) for tube in plan.tubes]
+    filled: frozenset[int] = frozenset()
+    while True:
+        plan = plan_tubes(contours, said, height, filled)
+        skinned = [_skinned(tube, contours, count) for tube in plan.tubes]
+        folds = _folds(skinned)
+        if not folds:
+            break
+        if filled & folds.keys():
+            raise fold_error(*folds[min(filled & folds.keys())])
+        filled |= folds.keys()
     _check(skinned, contours, plan.areas)
-    reports = _reports(skinned)
-    notices = [*plan.traced.notices, *(n for one in skinned for n in one.sections.notices)]
+    reports = _reports(skinned, plan, contours.affine)
+    notices = [
+        *plan.traced.notices,
+        *(n for one in skinned for n in one.sections.notices),
+        *guess_notices(reports),
+    ]
     return LoftedSolid(
         tuple(_shell(one) for one in skinned),
         reports,
@@ -82,7 +104,9 @@ def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> _Skinned:
     rows = tube.rows
     if len(rows) == 1:  # both ends are planned beyond it
         hair = HAIR * float(np.ptp(rows[0].loop.points))
-        if tube.ends[1].planned is None:  # the joint's row keeps its place
+        if (
+            tube.ends[1].planned is None or tube.ends[1].outer
+        ):  # the joint's or the face's row keeps its place
             rows = (replace_row(rows[0], rows[0].z - hair), rows[0])
         else:
             rows = (rows[0], replace_row(rows[0], rows[0].z + hair))
@@ -98,15 +122,7 @@ def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> _Skinned:
 
 
 def _row_end(end: TubeEnd) -> RowEnd:
-    if end.planned is None:
-        return RowEnd(0.0, pole=False)
-    return RowEnd(
-        end.planned.length, pole=not _is_plane(end.planned), smooth=end.planned.kind is EndKind.ROUND
-    )
-
-
-def _is_plane(end: PlannedEnd) -> bool:
-    return end.kind in {EndKind.FACE, EndKind.FLAT}
+    return RowEnd(0.0, pole=False) if end.planned is None else row_end(end.planned)
 
 
 def _shell(one: _Skinned) -> Shell:
@@ -119,7 +135,7 @@ def _shell(one: _Skinned) -> Shell:
 def _shell_end(end: TubeEnd) -> ShellEnd:
     if end.planned is None:
         return ShellEnd.JOINT
-    if not _is_plane(end.planned):
+    if not is_plane(end.planned):
         return ShellEnd.POLE
     return ShellEnd.OPENING if end.opening else ShellEnd.FACE
 
@@ -152,15 +168,55 @@ def _check(skinned: list[_Skinned], contours: ContourStack, areas: FloatArray) -
     check_tubes_against_areas(volumes, z, areas, names)
 
 
-def _reports(skinned: list[_Skinned]) -> tuple[EndReport, ...]:
-    """Return what is told of the first and the last end: that of the largest tube."""
-    reports = []
-    for k in (0, 1):
-        outer = [one for one in skinned if one.tube.ends[k].outer and not one.tube.hole]
-        outer.sort(key=lambda one: -abs(one.tube.rows[-1 if k else 0].loop.signed_area))
-        main = outer[0].tube.ends[k].planned if outer else None
-        if main is None:
-            reports.append(EndReport("face", 0.0, "nothing ends there", guessed=False))
+def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
+    """Return the sections after which a skin folds, with their names and the next ones'.
+
+    Levels put in lie closer together than their loops are known; between them nothing is looked for.
+    """
+    found = {}
+    for one in skinned:
+        rows = one.tube.rows
+        first = int(one.patches[0, 0, 0, 0, 2] < rows[0].z - 1e-12 * abs(rows[0].z))
+        pairs = [
+            (k, low, high)
+            for k, (low, high) in enumerate(pairwise(rows))
+            if low.section is not None and high.section is not None and low.section != high.section
+        ]
+        if not pairs:
             continue
-        reports.append(EndReport(main.kind.value, main.length, main.reason, main.guessed))
-    return tuple(reports)
+        folded = folded_rows(one.patches[[first + k for k, _, _ in pairs]])
+        for (_, low, high), bad in zip(pairs, folded, strict=True):
+            if bad and low.section is not None:
+                found[low.section] = (low.name, high.name)
+    return found
+
+
+def _reports(skinned: list[_Skinned], plan: TubePlan, affine: FloatArray) -> tuple[EndReport, EndReport]:
+    """Return what is told of the first and the last end: that of its largest piece, and what guesses cost."""
+    return _side_report(skinned, plan.roofs[0], affine, 0), _side_report(skinned, plan.roofs[1], affine, 1)
+
+
+def _side_report(skinned: list[_Skinned], roofs: tuple[Roof, ...], affine: FloatArray, k: int) -> EndReport:
+    reports: list[tuple[float, EndReport]] = []
+    for one in skinned:
+        end = one.tube.ends[k]
+        if not end.outer or end.planned is None or one.tube.hole or end.planned is FACE:
+            continue
+        points, corners = one.sections.points, one.sections.corners
+        if k:
+            points, corners = flipped(points), corners[::-1]
+        size = abs(one.tube.rows[-1 if k else 0].loop.signed_area)
+        reports.append((size, end_report(points, corners, end.planned, affine)))
+    reports += [(roof.area, roof.report()) for roof in roofs]
+    if not reports:
+        return EndReport("face", 0.0, "nothing of the body reaches it", guessed=False)
+    main = max(reports, key=lambda item: item[0])[1]
+    guessed = [report for _, report in reports if report.guessed]
+    if not guessed:
+        return main
+    return replace(
+        main,
+        guessed=True,
+        volume_effect=sum(report.volume_effect or 0.0 for report in guessed),
+        area_effect=sum(report.area_effect or 0.0 for report in guessed),
+    )
