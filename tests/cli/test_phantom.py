@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from stackloft.cli.arguments import PHANTOMS
+from stackloft.cli.phantom_arguments import PHANTOMS
 from stackloft.testing.phantoms import NAMES
 
 

@@ -10,6 +10,7 @@ import typer
 
 from stackloft.cli import arguments as a
 from stackloft.cli.guard import answering, guarded
+from stackloft.cli.phantom_command import phantom_commands
 from stackloft.cli.plugin_commands import plugin_commands
 from stackloft.cli.study_commands import study_commands
 
@@ -180,82 +181,7 @@ def mesh(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declar
     run(request, MeshWish(out, mesher, options, writers, quiet, units.value))
 
 
-@app.command()
-@answering
-def phantom(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer declares them
-    name: a.PhantomName,
-    form: a.Form,
-    out: a.PhantomOut,
-    parameters: a.Parameters = None,
-    sections: a.Sections = None,
-    placing: a.Placing = None,
-    pixel_size: a.PixelSize = None,
-    rotation: a.Rotation = None,
-    offset: a.Offset = None,
-    realistic: a.Realistic = False,
-    seed: a.Seed = None,
-    plate: a.Plate = None,
-    suffix: a.Suffix = None,
-    camera: a.PhantomCamera = None,
-    reference: a.PhantomReference = None,
-    reference_height: a.ReferenceHeight = None,
-    reference_stays: a.ReferenceStays = False,
-    reference_once: a.ReferenceOnce = False,
-    tell: a.Tell = None,
-    levels: a.Levels = None,
-    noise: a.Noise = None,
-    bias: a.BiasField = None,
-    fill: a.Fill = None,
-    slab_points: a.SlabPoints = None,
-    tilt: a.Tilt = None,
-    cosines: a.Cosines = None,
-    origin: a.Origin = None,
-    aspect: a.Aspect = None,
-    stretch: a.Stretch = None,
-    empty: a.Empty = None,
-    margin: a.Margin = None,
-    label: a.LabelNumber = None,
-    syntax: a.Syntax = None,
-    multiframe: a.Multiframe = False,
-) -> None:
-    """Write a stack whose volume and area are known, to try things on."""
-    from stackloft.cli.phantom import run
-
-    options = {
-        "sections": sections,
-        "placing": placing,
-        "pixel_size": pixel_size,
-        "rotation": rotation,
-        "offset": offset,
-        "realistic": realistic or None,
-        "seed": seed,
-        "plate": plate,
-        "suffix": suffix,
-        "camera": camera,
-        "reference": reference,
-        "reference_height": reference_height,
-        "reference_stays": reference_stays or None,
-        "reference_once": reference_once or None,
-        "tell": tell,
-        "levels": levels,
-        "noise": noise,
-        "bias": bias,
-        "fill": fill,
-        "slab_points": slab_points,
-        "tilt": tilt,
-        "cosines": cosines,
-        "origin": origin,
-        "aspect": aspect,
-        "stretch": stretch,
-        "empty": empty,
-        "margin": margin,
-        "label": label,
-        "syntax": syntax,
-        "multiframe": multiframe or None,
-    }
-    run(name, form, out, options, parameters or ())
-
-
+app.add_typer(phantom_commands)
 app.add_typer(study_commands)
 app.add_typer(plugin_commands, name="plugins")
 

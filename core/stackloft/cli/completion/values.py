@@ -6,16 +6,17 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from stackloft.cli.arguments import PHANTOMS, Units
+from stackloft.cli.arguments import Units
 from stackloft.cli.completion import plugin_words
 from stackloft.cli.completion.candidate import FILES, Candidate, listed, plain
+from stackloft.cli.phantom_arguments import PHANTOMS
 
 Candidates = tuple[Candidate, ...] | None
 """None: files and folders (`FILES`)."""
 
 _ENDS = ("auto", "face", "flat:", "round", "round:", "point:")
 _REFERENCES = ("disc:", "square:", "ruler:")
-_FORMS = ("photos", "contours", "dicom", "nrrd", "nifti", "tiff")
+_FORMS = ("photos", "contours", "rtstruct", "dicom", "dicom-seg", "nrrd", "nifti", "tiff", "bruker")
 _SUFFIXES = ("png", "jpg", "tif", "bmp", "webp")
 _FAMILIES = ("reader", "segmenter", "reconstructor", "mesher", "integrator", "writer", "recipe")
 
