@@ -85,3 +85,22 @@ def test_scaling(integrator, scale):
     assert other.volume == pytest.approx(scale**3 * one.volume, rel=1e-10)
     if one.area is not None:
         assert other.area == pytest.approx(scale**2 * one.area, rel=1e-10)
+
+
+def test_holes_have_frustums_of_their_own():
+    """A cone frustum with a conical hole: both sides slant, each as it does."""
+    sections = [
+        Section(z, (Loop(circle(10 - z)), Loop(circle(2 + z)[::-1], hole=True)), f"z{z}") for z in (0.0, 3.0)
+    ]
+    found = Frustum().integrate(ContourStack(tuple(sections)))
+    sides = np.pi * (17 + 7) * 3 * np.sqrt(2)
+    assert found.area == pytest.approx(sides + np.pi * (100 - 4 + 49 - 25), rel=1e-6)
+
+
+def test_a_cavity_that_begins_leaves_the_outer_side_upright():
+    full, hollow = (Loop(circle(10.0)),), (Loop(circle(10.0)), Loop(circle(4.0)[::-1], hole=True))
+    cuts = [full, hollow, hollow, full]
+    found = Frustum().integrate(
+        ContourStack(tuple(Section(float(k), c, f"z{k}") for k, c in enumerate(cuts)))
+    )
+    assert found.area == pytest.approx(np.pi * (2 * 100 + 20 * 3 + 8 * 2), rel=1e-6)

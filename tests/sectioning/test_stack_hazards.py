@@ -117,3 +117,12 @@ def test_rates(proof):
         assert alarms <= (0.03 if family == "food" else 0.06) * len(stacks)
     claim = "Mistakes told, and alarms on sound stacks, half of them tilted, 9 to 18 sections"
     proof("stack-hazards", claim, ("bodies", "mistake", "stacks", "told"), rows)
+
+
+@pytest.mark.parametrize(
+    ("name", "rotation"),
+    [("y-branch", None), ("two-bodies", None), ("torus", (90, 0, 0)), ("horseshoe", None)],
+)
+def test_limbs_and_pieces_are_no_mistakes(name, rotation):
+    phantom = phantoms.make(name, rotation=rotation)
+    assert stack_hazards(list(phantom.contour_stack(21, points=120).sections), 0.3) == ()

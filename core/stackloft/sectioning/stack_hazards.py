@@ -2,7 +2,9 @@
 
 Section shapes and middles of a body change smoothly along its axis. What breaks the smoothness, and the one
 change that mends it, tell what happened (`geometry.order_hypotheses`, `geometry.displacement`). Small
-sections at the ends, which change fast, are left out; so is every stack of fewer than eight sections.
+sections at the ends, which change fast, are left out; so is every stack of fewer than eight sections. Where
+a section shows several outlines (limbs, several pieces) there is no one shape to follow: the longest run of
+sections with one outline is judged.
 The thresholds lie above what sound phantoms of 15 kinds show, tilted ones among them
 (`tests/sectioning/test_stack_hazards.py`).
 """
@@ -11,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -89,7 +92,10 @@ def stack_hazards(sections: Sequence[Section], pixel: float) -> tuple[Notice, ..
 
 
 def _judged(sections: Sequence[Section], pixel: float) -> _Judged | None:
-    if len(sections) < FEWEST or any(not section.loops for section in sections):
+    if any(not section.loops for section in sections):
+        return None
+    sections = _longest_run(sections)
+    if len(sections) < FEWEST:
         return None
     outlines = [
         max((loop.points for loop in section.loops), key=lambda points: abs(polygon_area(points)))
@@ -103,6 +109,12 @@ def _judged(sections: Sequence[Section], pixel: float) -> _Judged | None:
         return None
     names = tuple(section.name for section in kept)
     return _Judged(names, np.array([section.z for section in kept]), tuple(outlines[inner]), pixel)
+
+
+def _longest_run(sections: Sequence[Section]) -> Sequence[Section]:
+    """Return the longest run of sections that have one outline each (holes are no matter)."""
+    runs = groupby(sections, key=lambda section: sum(not loop.hole for loop in section.loops) == 1)
+    return max((list(run) for single, run in runs if single), key=len, default=[])
 
 
 def _order(judged: _Judged) -> tuple[Notice, ...]:

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
-from stackloft.sectioning.section_measures import section_areas, section_perimeters
+from stackloft.sectioning.section_measures import measure_loops, section_areas
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,8 @@ class Frustum:
     Engineering: each slice is a frustum of a cone with the sections' areas A and mean radii P/2π,
     V = h·(A₁ + A₂ + √(A₁A₂))/3, side = (P₁ + P₂)/2 · √(h² + (P₁ − P₂)²/4π²). Both volume and area stop
     at the outermost sections, so they err low on bodies with round ends, and the side is exact only for
-    coaxial similar sections.
+    coaxial similar sections. Several outlines, and holes, have frustums of their own, all of one mean
+    radius; where their number changes from one section to the next, sides are taken as upright.
     """
 
     api: ClassVar[str] = "1"
@@ -45,14 +46,23 @@ class Frustum:
         areas = section_areas(product)
         if not areas.sum() > 0.0:
             raise InputError("the sections have no area")
-        return Integral(*_frustums(np.diff(z), areas, section_perimeters(product)))
+        height = np.diff(z)
+        a, b = areas[:-1], areas[1:]
+        volume = float((height * (a + b + np.sqrt(a * b))).sum() / 3.0)
+        loops = measure_loops(product)
+        sides = sum(
+            _sides(height, loops.section[own], loops.perimeters[own])
+            for own in (loops.sign > 0.0, loops.sign < 0.0)
+        )
+        return Integral(volume, sides + float(areas[0] + areas[-1]))
 
 
-def _frustums(height: FloatArray, areas: FloatArray, perimeters: FloatArray) -> tuple[float, float]:
-    """Return volume and area of the frustums with their two plane faces."""
-    a, b = areas[:-1], areas[1:]
-    volume = float((height * (a + b + np.sqrt(a * b))).sum() / 3.0)
-    p, q = perimeters[:-1], perimeters[1:]
-    slant = np.hypot(height, (p - q) / (2.0 * np.pi))
-    side = float((0.5 * (p + q) * slant).sum())
-    return volume, side + float(areas[0] + areas[-1])
+def _sides(height: FloatArray, section: IntArray, perimeters: FloatArray) -> float:
+    """Return the sides' area of frustums between the loops of one kind, outlines or holes."""
+    m = len(height) + 1
+    counts = np.bincount(section, minlength=m)
+    total = np.bincount(section, perimeters, minlength=m)
+    p, q = total[:-1], total[1:]
+    alike = (counts[:-1] == counts[1:]) & (counts[1:] > 0)
+    lean = np.where(alike, (p - q) / (2.0 * np.pi * np.maximum(counts[1:], 1)), 0.0)
+    return float((0.5 * (p + q) * np.hypot(height, lean)).sum())
