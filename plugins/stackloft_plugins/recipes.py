@@ -66,6 +66,14 @@ polyhedral = Recipe(
     area_bias=Bias(-1.5, 0.5, _TRIANGLES),
 )
 
+repair = Recipe(
+    steps=("reconstructor.repair", "integrator.polyhedral"),
+    summary="a surface mended by MeshLab (holes, crossing and turned triangles), then by its triangles; "
+    "what the repair changed is told",
+    volume_bias=Bias(-2.0, 2.0, _TRIANGLES),
+    area_bias=Bias(-2.0, 2.0, _TRIANGLES),
+)
+
 isosurface = Recipe(
     steps=("reconstructor.isosurface", "integrator.polyhedral"),
     summary="the level's surface through the voxels (flying edges); high in area where slices are far apart "
