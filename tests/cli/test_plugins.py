@@ -5,6 +5,9 @@ import os
 import subprocess
 import sys
 
+import jsonschema
+import pytest
+
 from stackloft.testing.conformance.throwaway import write_distribution
 
 
@@ -32,6 +35,10 @@ def test_show_as_json_names_the_same_options(stackloft):
     (details,) = json.loads(stackloft("plugins", "show", "writer.stl", "--json").stdout)
     (option,) = details["options"]
     assert (option["name"], option["unit"], option["bounds"]) == ("tolerance", "mm", {"gt": 0})
+    jsonschema.Draft202012Validator.check_schema(details["schema"])
+    jsonschema.validate({"tolerance": option["default"]}, details["schema"])
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"tolerence": 0.1}, details["schema"])
 
 
 def test_a_name_in_several_families_shows_all_of_them(stackloft):

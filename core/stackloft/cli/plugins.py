@@ -19,7 +19,7 @@ from stackloft.registry.alone import load_each_alone
 from stackloft.registry.fields import OptionField, fields_of
 from stackloft.registry.glance import glance
 from stackloft.registry.loading import Loaded, Quarantined, load
-from stackloft.registry.options_model import plain
+from stackloft.registry.options_model import plain, schema
 from stackloft.registry.scan import Listing
 
 Outcome = Loaded | Quarantined
@@ -76,6 +76,7 @@ def _details(outcome: Outcome) -> dict[str, Any]:
         "accepts": [kind.__name__ for kind in plugin.accepts],
         "produces": [kind.__name__ for kind in plugin.produces],
         "options": [_option(field) for field in fields_of(plugin)],
+        "schema": schema(plugin),
     }
 
 

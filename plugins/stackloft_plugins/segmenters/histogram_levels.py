@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -116,5 +117,8 @@ def grey_histogram(grey: Grey) -> tuple[Floats, Floats]:
     if not high > low:
         return np.array([float(grey.size)]), np.array([low])
     bins = _BINS if high - low < 16 else min(_BINS, int(high - low) + 1)
-    counts, edges = np.histogram(grey, bins=bins, range=(low, high))
+    levels = np.ascontiguousarray(grey, dtype=np.float32)
+    above = float(np.nextafter(np.float32(high), np.float32(np.inf)))  # OpenCV leaves the upper end out
+    counts = cv2.calcHist([levels], [0], None, [bins], [low, above]).ravel()
+    edges = np.linspace(low, high, bins + 1)
     return counts.astype(np.float64), 0.5 * (edges[:-1] + edges[1:])
