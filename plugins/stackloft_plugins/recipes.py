@@ -96,6 +96,7 @@ fem_tetwild = Recipe(
     summary="the loft, of any topology, filled with curved tetrahedra by fTetWild, its boundary put back "
     "on the loft; integrated by Gauss rules of degree 4",
     options={"mesher.tetwild": {"order": 2}, "integrator.fem": {"degree": 4}},
+    slow=True,
     volume_bias=Bias(-1.0, 1.0, _LOFTED),
     area_bias=Bias(-1.5, 1.5, _LOFTED),
 )
@@ -105,6 +106,7 @@ tetwild = Recipe(
     summary="the level's surface through the voxels filled with straight tetrahedra by fTetWild; errs as "
     "isosurface does, and low by what fTetWild's envelope cuts off",
     options={"mesher.tetwild": {"order": 1}},
+    slow=True,
     volume_bias=Bias(-1.5, 1.0, _LEVEL),
     area_bias=Bias(-2.0, 10.0, _LEVEL),
 )

@@ -17,7 +17,7 @@ import pytest
 from stackloft.pipeline.plan import method_names
 from stackloft.report.accuracy_files import write_accuracy, write_heat_map
 from stackloft.report.whole_file import whole_file
-from stackloft.studies.accuracy import AccuracyRequest, study_accuracy
+from stackloft.studies.accuracy import AccuracyRequest, studied_methods, study_accuracy
 from stackloft.studies.accuracy_axes import FULL, QUICK
 from stackloft.studies.accuracy_bodies import BODIES
 from stackloft.studies.accuracy_table import finest
@@ -80,8 +80,10 @@ def test_every_method_keeps_its_promise(label):
 def test_every_installed_method_is_in_every_case():
     rows = studied("box").rows
     cases = {(row.axis, row.value) for row in rows}
-    assert {row.method for row in rows} == set(method_names("all"))
-    assert len(rows) == len(cases) * len(method_names("all"))
+    methods = set(method_names("all")) - {"polyhedral", "fem-tetwild", "tetwild"}  # for surfaces; too slow
+    assert set(studied_methods()) == methods | {"polyhedral"}
+    assert {row.method for row in rows} == methods
+    assert len(rows) == len(cases) * len(methods)
     assert all(row.failure or row.volume_error is not None for row in rows)
 
 

@@ -29,4 +29,6 @@ class Recipe:
     """Where its volumes may lie, by what is known of the method; None: it has no say when methods differ."""
     area_bias: Bias | None = None
     """Likewise for its areas. What an integrator says of one body (`Integral`) wins."""
+    slow: bool = False
+    """Takes seconds to minutes for a body: ``all`` has it, studies of many bodies only when it is named."""
     api: str = "1"

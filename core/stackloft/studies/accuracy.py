@@ -19,7 +19,7 @@ from stackloft.pipeline.plan import Method, make_plan, method_names
 from stackloft.pipeline.progress import Progress, Silence
 from stackloft.pipeline.request import ALL_METHODS, MeasureRequest
 from stackloft.pipeline.workbench import Workbench
-from stackloft.registry import fields_of
+from stackloft.registry import Loaded, catalogue, fields_of, load
 from stackloft.studies.accuracy_axes import AXES, FULL, REFINED, Case, Levels, cases, subject_of
 from stackloft.studies.accuracy_bodies import BODIES, AccuracyBody
 from stackloft.studies.accuracy_table import (
@@ -109,13 +109,23 @@ def _rows(body: AccuracyBody, asked: AccuracyRequest) -> Iterator[AccuracyRow]:
 
 def run_case(one: Case, methods: Sequence[str] = (ALL_METHODS,)) -> tuple[AccuracyRow, ...]:
     """Return a row of `one` for each of `methods`; each takes the first product that it can start from."""
-    names = method_names(ALL_METHODS) if ALL_METHODS in methods else tuple(methods)
+    names = studied_methods() if ALL_METHODS in methods else tuple(methods)
     rows: dict[str, AccuracyRow] = {}
     for make in one.products:
         left = [name for name in names if name not in rows or rows[name].failure is not None]
         if left:
             rows |= _run(one, make, left)
-    return tuple(rows[name] for name in names)
+    return tuple(rows[name] for name in names if name in rows)
+
+
+def studied_methods() -> tuple[str, ...]:
+    """Return the methods studied when none is named: all but those that take long for each body."""
+    slow = {
+        loaded.listing.qualified if loaded.listing.clash else loaded.name
+        for loaded in map(load, catalogue("recipe"))
+        if isinstance(loaded, Loaded) and loaded.plugin.slow
+    }
+    return tuple(name for name in method_names(ALL_METHODS) if name not in slow)
 
 
 def _run(one: Case, make: Callable[[], Any], names: Sequence[str]) -> Mapping[str, AccuracyRow]:
@@ -127,7 +137,7 @@ def _run(one: Case, make: Callable[[], Any], names: Sequence[str]) -> Mapping[st
     plan = make_plan(MeasureRequest(Path(one.body.label), method=ALL_METHODS, shared=one.shared), product)
     planned = {method.name: method for method in plan.methods}
     bench = Workbench(plan, product, Silence())
-    return {name: _row(one, planned[name], bench) for name in names}
+    return {name: _row(one, planned[name], bench) for name in names if name in planned}
 
 
 def _plain(one: Case, method: str) -> AccuracyRow:
