@@ -67,6 +67,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
     axis: a.Axis = None,
     scale_uncertainty: a.ScaleUncertaintyFlag = None,
     keep_identifiers: a.KeepIdentifiers = False,
+    align: a.Align = None,
     settings: a.Settings = None,
     recipe: a.RecipeFile = None,
     reader: a.Reader = None,
@@ -92,6 +93,7 @@ def measure(  # noqa: PLR0913, PLR0917 - one parameter per flag is how Typer dec
         "axis": axis,
         "scale_uncertainty": scale_uncertainty,
         "keep_identifiers": keep_identifiers or None,
+        "align": align,
     }
     writers, own = split_settings(parse_settings(settings or ()))
     request = request_of(

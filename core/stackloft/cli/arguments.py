@@ -138,6 +138,14 @@ Order = Annotated[int | None, typer.Option("--order", help="Order of the element
 MaxElementSize = Annotated[
     str | None, typer.Option("--max-element-size", metavar="LEN", help="Longest element edge.")
 ]
+Align = Annotated[
+    str | None,
+    typer.Option(
+        "--align",
+        metavar="none|translation|rigid",
+        help="Lay slices that were photographed one by one on each other: by marks, or by their neighbours.",
+    ),
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option(

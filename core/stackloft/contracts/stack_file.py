@@ -3,6 +3,10 @@
 ::
 
     kind = "face"                  # face | silhouette | slab
+    section = "face"               # the same for photographs: face | silhouette
+    first = "face"                 # face | cap: the first picture shows the body's outer end, not a cut
+    faces = "one"                  # one | both: two pictures for each slice, its upper face first
+    turned = "left-right"          # left-right | up-down | no: how slices were turned over for the lower face
     pixel_size = "0.3mm"           # a bare number is millimetres; or pixel_sizes, one for each picture,
                                    # dpi = true (a flatbed scan's tags), or a reference object:
     reference = "disc:24.25mm"     # disc | square | ruler
@@ -11,6 +15,8 @@
     scale_uncertainty = "0.2%"     # standard uncertainty of the pixel size
     thickness = 5.6                # or positions = "0,5.6,11.1mm", one for each picture
     kerf = "0.4mm"                 # what the blade takes away between two slices
+    align = "rigid"                # none | translation | rigid: slices laid down one by one
+    fiducials = "disc:8mm"         # marks beside the body that moved with each slice
     ends = "face,round:2.5mm"      # as --ends
     height = "78mm"
     background = "light"           # light | dark; found from the picture when left out
@@ -46,6 +52,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from stackloft.contracts.stack_values import (
     bare_name,
     ends_of,
+    fiducials_of,
     length_of,
     lengths_of,
     percent_of,
@@ -108,9 +115,15 @@ class StackFile(BaseModel):
     reference_height: _Shift | None = None
     reference_stays: bool = False
     camera: CameraSaid = CameraSaid()
+    section: Literal["face", "silhouette"] | None = None
+    first: Literal["face", "cap"] | None = None
+    faces: Literal["one", "both"] | None = None
+    turned: Literal["left-right", "up-down", "no"] | None = None
     thickness: _Length | None = None
     kerf: Annotated[float, BeforeValidator(length_of), Field(ge=0, allow_inf_nan=False)] | None = None
     positions: _Lengths | None = None
+    align: Literal["none", "translation", "rigid"] | None = None
+    fiducials: Annotated[Reference, BeforeValidator(fiducials_of)] | None = None
     ends: Annotated[tuple[End, End], BeforeValidator(ends_of)] | None = None
     height: _Length | None = None
     background: Literal["light", "dark"] | None = None
@@ -143,6 +156,7 @@ class StackFile(BaseModel):
             measured_weight=self.measured_weight,
             measured_volume=self.measured_volume,
             slices={number: said for number, said in slices.items() if said},
+            align=self.align,
         )
 
 

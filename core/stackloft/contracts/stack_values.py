@@ -10,7 +10,7 @@ from typing import Any
 from stackloft.model.ends import End
 from stackloft.model.errors import StackloftError
 from stackloft.model.lengths import MILLIMETRES, parse_length, parse_lengths
-from stackloft.model.reference import Reference
+from stackloft.model.reference import Reference, ReferenceKind
 
 GRAMS = {"g": 1.0, "kg": 1e3, "mg": 1e-3, "oz": 28.349523125, "lb": 453.59237}
 """Grams in one unit."""
@@ -51,6 +51,14 @@ def reference_of(value: Any) -> Reference:
         return Reference.parse(str(value))
     except StackloftError as error:
         raise ValueError(_reason(error)) from error
+
+
+def fiducials_of(value: Any) -> Reference:
+    """Return a fiducial mark."""
+    mark = reference_of(value)
+    if mark.kind is not ReferenceKind.DISC:
+        raise ValueError("fiducial marks are discs, as disc:8mm")
+    return mark
 
 
 def ends_of(value: Any) -> tuple[End, End]:

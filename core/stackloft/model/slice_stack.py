@@ -47,6 +47,8 @@ class Hints:
     """mm³"""
     slices: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)
     """Per-slice overrides (``threshold``, ``mask``, ``skip``) by slice number, counted from 1."""
+    align: str | None = None
+    """``none``, ``translation`` or ``rigid``; None: not said."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +57,8 @@ class SliceStack:
 
     In-plane coordinates: x = column·column spacing, y = row·row spacing, z = position: the picture is
     seen along +z, so (x, y, z) is right-handed. Pixel (0, 0)'s centre is the in-plane origin, or lies at
-    the slice's own origin when slices are scaled about a principal point: x = origin + column·spacing.
+    the slice's own origin when slices are scaled about a principal point, or were laid down one by one and
+    are aligned: x = origin + column·spacing. A slice may also be turned about that pixel (`placed`).
     """
 
     decode: Callable[[int], Picture]
@@ -75,6 +78,11 @@ class SliceStack:
     """(4, 4) from stack millimetres (x, y, z, 1) to patient/bench millimetres; shear is gantry tilt."""
     origins: FloatArray | None = None
     """(m, 2) mm: x, y of pixel (0, 0)'s centre in each slice; None: all at 0."""
+    turns: FloatArray | None = None
+    """(m) rad from x to y, about pixel (0, 0)'s centre; None: no slice is turned."""
+    marks: FloatArray | None = None
+    """(m, k, 2) column, row of fiducial marks that moved with each slice, the same ones in the same order;
+    NaN where one was not seen. None: there are none."""
     scale_uncertainty: ScaleUncertainty | None = None
     """How well the pixel spacing is known; None: nothing is known of that."""
     hints: Hints = field(default_factory=Hints)
@@ -87,6 +95,31 @@ class SliceStack:
 
     def __len__(self) -> int:
         return len(self.names)
+
+    def placed(self, index: int, points: FloatArray) -> FloatArray:
+        """Return points of slice `index` where they lie in the stack's plane coordinates.
+
+        Parameters
+        ----------
+        index : int
+            Slice number, from 0.
+        points : array (n, 2)
+            x = column·column spacing, y = row·row spacing, mm.
+        """
+        turned = points if self.turns is None else points @ turn_matrix(float(self.turns[index])).T
+        return turned if self.origins is None else turned + self.origins[index]
+
+
+def turn_matrix(angle: float) -> FloatArray:
+    """Return the (2, 2) matrix that turns (x, y) by `angle`, rad, from x to y.
+
+    Examples
+    --------
+    >>> (turn_matrix(np.pi / 2) @ [1.0, 0.0]).round(9).tolist()
+    [0.0, 1.0]
+    """
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])
 
 
 def check_slice_stack(stack: SliceStack) -> None:
@@ -102,6 +135,10 @@ def check_slice_stack(stack: SliceStack) -> None:
         raise InputError(
             "origins do not fit the slices", found=str(stack.origins.shape), expected=f"({m}, 2)"
         )
+    if stack.turns is not None and (stack.turns.shape != (m,) or not np.isfinite(stack.turns).all()):
+        raise InputError("turns do not fit the slices", found=str(stack.turns.shape), expected=f"({m},)")
+    if stack.marks is not None and (stack.marks.ndim != 3 or stack.marks.shape[::2] != (m, 2)):
+        raise InputError("marks do not fit the slices", found=str(stack.marks.shape), expected=f"({m}, k, 2)")
     if stack.scale_uncertainty is not None and stack.scale_uncertainty.each.shape != (m,):
         raise InputError("the scale's uncertainty does not fit the slices", expected=f"({m},) values")
     if not (np.isfinite(stack.positions).all() and (np.diff(stack.positions) > 0).all()):

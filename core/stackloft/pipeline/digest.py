@@ -109,8 +109,9 @@ class PictureDigest:
         stack = segmentation.stack
         for array in (stack.positions, stack.pixel_spacing, stack.affine):
             self._hash.update(array.tobytes())
-        if stack.origins is not None:
-            self._hash.update(stack.origins.tobytes())
+        for moved in (stack.origins, stack.turns):
+            if moved is not None:
+                self._hash.update(moved.tobytes())
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
         """Take in one picture."""

@@ -26,6 +26,7 @@ from PIL import Image, ImageDraw
 
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.model.slice_stack import turn_matrix
 from stackloft.report.sheet import INK, MOUNT, PAPER, draw_scale_bar, font, line_height, shortened
 from stackloft.report.thumbnails import Rgb, Thumbnail, side_for
 
@@ -118,7 +119,9 @@ def _cell(
 
 def _pixels(loop: Loop, small: Thumbnail) -> FloatArray:
     """Return the loop's vertices as (column, row) of the thumbnail."""
-    pixels: FloatArray = loop.points * np.array(small.per_mm) + np.array(small.origin)
+    pixels: FloatArray = loop.points @ turn_matrix(small.turn) * np.array(small.per_mm) + np.array(
+        small.origin
+    )
     return pixels
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture
+from stackloft.model.slice_stack import Picture, turn_matrix
 
 Rgb = NDArray[np.uint8]
 """(rows, columns, 3)"""
@@ -41,6 +41,8 @@ class Thumbnail:
     """Thumbnail pixels per millimetre along x and y."""
     origin: tuple[float, float]
     """Where x = 0, y = 0 lies: (column, row), thumbnail pixels, centre of the first pixel at 0."""
+    turn: float = 0.0
+    """rad by which the slice was turned to lie on its neighbours; the thumbnail is as the picture is."""
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -86,7 +88,8 @@ class ThumbnailSink:
         size = max(1, round(columns * factor)), max(1, round(rows * factor))
         along = size[0] / columns, size[1] / rows
         row_spacing, column_spacing = self._stack.pixel_spacing[index]
-        x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index]
+        turn = 0.0 if self._stack.turns is None else float(self._stack.turns[index])
+        x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index] @ turn_matrix(turn)
         from_left, from_top = window.left + x / column_spacing, window.top + y / row_spacing
         self._thumbnails.append(
             Thumbnail(
@@ -95,6 +98,7 @@ class ThumbnailSink:
                 as_rgb(resized(resizable(part), size)),
                 (along[0] / column_spacing, along[1] / row_spacing),
                 ((0.5 - from_left) * along[0] - 0.5, (0.5 - from_top) * along[1] - 0.5),
+                turn,
             )
         )
 

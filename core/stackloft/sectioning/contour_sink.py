@@ -104,9 +104,9 @@ class ContourSink:
 
 def _placed(loop: Loop, stack: SliceStack, index: int) -> Loop:
     """Return the loop where it lies in the stack's plane coordinates."""
-    if stack.origins is None:
+    if stack.origins is None and stack.turns is None:
         return loop
-    return replace(loop, points=frozen_floats(loop.points + stack.origins[index]))
+    return replace(loop, points=frozen_floats(stack.placed(index, loop.points)))
 
 
 def trace_stack(segmentation: Segmentation, rules: TraceRules | None = None) -> ContourStack:

@@ -10,7 +10,7 @@ r"""A stack's field as one block of voxels, gathered slice by slice.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture
 from stackloft.sectioning.clean_field import clean_field
+from stackloft.sectioning.common_lattice import lattice_of, on_lattice
 from stackloft.sectioning.contour_sink import gathered
 
 EVEN = 1e-3
@@ -37,6 +38,7 @@ class FieldVolume:
     first_pixel: tuple[int, int]
     """(row, column) of the block's first pixel in a slice; may be -1, as the block is wider than the body."""
     segmentation: Segmentation
+    """Its stack is the block's lattice: slices shifted or turned against each other are brought onto it."""
     notices: tuple[Notice, ...] = ()
 
     def basis(self) -> FloatArray:
@@ -58,11 +60,6 @@ class FieldVolume:
                     found=f"{values.min():g} to {values.max():g} mm",
                     fix="use --method loft or isosurface, which take the slices where they are",
                 )
-        if stack.origins is not None and np.ptp(stack.origins, axis=0).max() > EVEN * pixels.mean():
-            raise InputError(
-                "the slices' pixels are shifted against each other, so that the voxels form no lattice",
-                fix="use --method loft or isosurface, which take the slices where they are",
-            )
         row, column = pixels.mean(axis=0)
         return np.asarray(stack.affine[:3, :3] @ np.diag([column, row, gaps.mean()]))
 
@@ -88,11 +85,12 @@ class VolumeSink:
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready."""
         self._segmentation = segmentation
+        self._lattice = lattice_of(segmentation.stack)
         self._crops: list[tuple[NDArray[Any], tuple[int, int]]] = []
         self._notices: list[Notice] = []
         self._lowest = 0.0
 
-    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
+    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
         """Take one slice.
 
         Raises
@@ -102,9 +100,14 @@ class VolumeSink:
         """
         field = clean_field(section_field, labels=self._segmentation.binary)
         self._lowest = min(self._lowest, float(np.median(_frame(field))))
-        crop = bordered(field).astype(np.float32) if self._dtype == np.float32 else np.pad(field > 0, 1)
         row, column = section_field.offset
-        self._crops.append((crop, (row - 1, column - 1)))
+        first = (row - 1, column - 1)
+        if self._lattice is self._segmentation.stack:
+            crop = bordered(field).astype(np.float32) if self._dtype == np.float32 else np.pad(field > 0, 1)
+        else:
+            grey, first = on_lattice(self._segmentation.stack, index, bordered(field), first)
+            crop = grey.astype(np.float32) if self._dtype == np.float32 else grey > 0
+        self._crops.append((crop, first))
         self._notices += section_field.notices
         self._check_memory()
 
@@ -126,7 +129,8 @@ class VolumeSink:
         self._crops = []
         if not (block > 0).any():
             raise InputError("nothing in the slices is above the level: there is no body")
-        return self._finish(FieldVolume(block, (top, left), self._segmentation, gathered(self._notices)))
+        segmentation = replace(self._segmentation, stack=self._lattice)
+        return self._finish(FieldVolume(block, (top, left), segmentation, gathered(self._notices)))
 
     def _rectangle(self) -> tuple[int, int, int, int]:
         """Return top, left, bottom and right of all crops together."""

@@ -19,25 +19,27 @@ import numpy as np
 
 from stackloft.geometry.displacement import best_displacement
 from stackloft.geometry.order_hypotheses import Supposition, best_supposition
-from stackloft.geometry.roughness import roughness
 from stackloft.geometry.shoelace import polygon_area, polygon_centroid
 from stackloft.geometry.support_features import support_features
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Section
 from stackloft.model.notices import Notice
+from stackloft.sectioning.misalignment import misaligned
 
 FEWEST = 8
 """Sections, without the small ones at the ends."""
 SMALL = 0.3
 """Of the largest area: smaller sections at an end are not judged."""
+FEWEST_LAID = 6
+"""Sections from which on it is told whether slices lie on each other."""
+TIP = 0.05
+"""Of the largest area: smaller sections at an end say nothing of that."""
 GAINS = {"swapped": 4.0, "moved": 4.0, "missing": 4.0, "doubled": 4.0, "outlier": 7.0}
 """How much rougher than when changed a stack must be for the change to be told."""
 MOVED = 10.0
 """Likewise for a displacement."""
 LEAST_MOVE = (0.015, 3.0)
 """Of the mean diameter, and pixels: smaller displacements do no harm."""
-JITTER = 0.03
-"""Of the mean diameter: rougher middles are a stack whose pictures do not lie on each other."""
 LEAST_ODD = 0.01
 """Of the area: by which an odd section must differ from its neighbours' mean."""
 _EDGE = 0.1  # pixels: noise of a section's outline
@@ -85,27 +87,30 @@ def stack_hazards(sections: Sequence[Section], pixel: float) -> tuple[Notice, ..
     >>> stack_hazards(cuts, 0.2)
     ()
     """
-    judged = _judged(sections, pixel)
-    if judged is None:
-        return ()
-    return _order(judged) or _motion(judged)
+    judged = _judged(sections, pixel, SMALL, FEWEST)
+    order, accused = ((), ()) if judged is None else _order(judged)
+    motion = () if judged is None or order else _motion(judged)
+    if motion:
+        return motion
+    others = [section for section in sections if section.name not in accused]
+    return order + _misaligned(_judged(others, pixel, TIP, FEWEST_LAID))
 
 
-def _judged(sections: Sequence[Section], pixel: float) -> _Judged | None:
+def _judged(sections: Sequence[Section], pixel: float, small: float, fewest: int) -> _Judged | None:
     if any(not section.loops for section in sections):
         return None
     sections = _longest_run(sections)
-    if len(sections) < FEWEST:
+    if len(sections) < fewest:
         return None
     outlines = [
         max((loop.points for loop in section.loops), key=lambda points: abs(polygon_area(points)))
         for section in sections
     ]
     areas = np.abs([polygon_area(outline) for outline in outlines])
-    large = np.flatnonzero(areas >= SMALL * areas.max())
+    large = np.flatnonzero(areas >= small * areas.max())
     inner = slice(int(large[0]), int(large[-1]) + 1)
     kept = sections[inner]
-    if len(kept) < FEWEST:
+    if len(kept) < fewest:
         return None
     names = tuple(section.name for section in kept)
     return _Judged(names, np.array([section.z for section in kept]), tuple(outlines[inner]), pixel)
@@ -117,13 +122,20 @@ def _longest_run(sections: Sequence[Section]) -> Sequence[Section]:
     return max((list(run) for single, run in runs if single), key=len, default=[])
 
 
-def _order(judged: _Judged) -> tuple[Notice, ...]:
+def _order(judged: _Judged) -> tuple[tuple[Notice, ...], tuple[str, ...]]:
+    """Return what is wrong with the order, and the sections that this is about."""
     features = np.array([support_features(outline) for outline in judged.outlines])
     noise = 2 * _EDGE * judged.pixel * float(np.sqrt(features.sum(axis=1).mean()))
     pitch = float(np.median(np.diff(judged.z)))
     best = best_supposition(judged.z, features, noise, pitch)
     if best is None or best.gain < GAINS[best.change]:
-        return ()
+        return (), ()
+    names = judged.names
+    notices = _order_notices(judged, features, best)
+    return notices, (names[best.first], names[best.second]) if notices else ()
+
+
+def _order_notices(judged: _Judged, features: FloatArray, best: Supposition) -> tuple[Notice, ...]:
     names = judged.names
     told = f"the sections are then {best.gain:.0f} times as smooth"
     if best.change in {"swapped", "moved"}:
@@ -178,7 +190,6 @@ def _odd(judged: _Judged, best: Supposition, told: str) -> tuple[Notice, ...]:
 
 def _motion(judged: _Judged) -> tuple[Notice, ...]:
     middles = judged.middles
-    jitter = float(np.sqrt(roughness(judged.z, middles)))
     best = best_displacement(judged.z, middles, _EDGE * judged.pixel)
     least = max(LEAST_MOVE[0] * judged.diameter, LEAST_MOVE[1] * judged.pixel)
     if best is not None and best.gain >= MOVED and best.length >= least and _inside(best.first, judged):
@@ -188,14 +199,12 @@ def _motion(judged: _Judged) -> tuple[Notice, ...]:
             f"(the middles are {best.gain:.0f} times as smooth without that); camera or piece moved"
         )
         return (Notice("motion", message),)
-    if jitter < JITTER * judged.diameter:
-        return ()
-    message = (
-        f"{judged.names[0]} … {judged.names[-1]}: the sections' middles scatter by {jitter:.2g} mm "
-        f"({100 * jitter / judged.diameter:.1f} % of the body's width) from slice to slice; were the slices "
-        "photographed one by one without marks?"
-    )
-    return (Notice("misaligned", message),)
+    return ()
+
+
+def _misaligned(judged: _Judged | None) -> tuple[Notice, ...]:
+    loose = None if judged is None else misaligned(judged.names, judged.z, judged.outlines)
+    return () if loose is None else (loose,)
 
 
 def _inside(k: int, judged: _Judged) -> bool:

@@ -15,35 +15,51 @@ cut laid bare; with a thickness t, face k lies at k·t.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from stackloft.contracts.options import option
-from stackloft.contracts.stack_file import NAME, StackFile, load_stack_file
-from stackloft.model.arrays import frozen_floats
-from stackloft.model.errors import InputError, UsageError
+from stackloft.contracts.stack_file import StackFile, load_stack_file
+from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.notices import Notice
-from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
-from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture, read_header
+from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft_plugins.readers.chosen_slices import (
+    between,
+    check_count,
+    check_kind,
+    masks,
+    paired,
+    sample,
+)
+from stackloft_plugins.readers.picture_decode import read_header
 from stackloft_plugins.readers.picture_folder import check_sizes, list_pictures, split_source
-from stackloft_plugins.readers.picture_kinds import READABLE, SUFFIXES, natural_key, picture_kind
+from stackloft_plugins.readers.picture_kinds import READABLE, picture_kind
 from stackloft_plugins.readers.picture_scale import Bench
-from stackloft_plugins.readers.reference_sighting import Found
 from stackloft_plugins.readers.scale_choice import ScaledSlices, profiles, require_scale, scale_of
 from stackloft_plugins.readers.scale_said import ScaleFlags, scale_said
-from stackloft_plugins.readers.section_spacing import (
-    SpacingOptions,
-    first_position,
-    height_notice,
-    positions_of,
-)
+from stackloft_plugins.readers.section_spacing import SpacingOptions, first_position, positions_of
 from stackloft_plugins.readers.skipped_slices import without_skipped
+from stackloft_plugins.readers.slice_decoder import decoder, hiding
+from stackloft_plugins.readers.slice_faces import placed_when_turned, turned_over, without_doubles
+from stackloft_plugins.readers.slice_thickness import height_notice, own_thickness
+from stackloft_plugins.readers.what_is_shown import (
+    FACES,
+    FIRST,
+    SECTIONS,
+    TURNED,
+    Shown,
+    check_silhouettes,
+    ends_with_cap,
+    fiducials_said,
+    hints_of,
+    what_is_shown,
+    without_cap,
+)
 
-MIN_SLICES = 2
-"""Fewer sections bound no body."""
+if TYPE_CHECKING:
+    from stackloft_plugins.readers.fiducials import Marks
 
-_PROBED = 8  # files opened to tell whether a folder holds pictures
 _CONFIDENCE = 0.8
 
 
@@ -100,6 +116,19 @@ class PhotosReader:
         unit="mm",
         ge=0,
     )
+    section: str | None = option(
+        None, "face: pictures show cut faces alone; silhouette: side walls as well", choices=SECTIONS
+    )
+    first_shows: str | None = option(
+        None, "cap: the folder's first picture shows the body's outer end, not a cut", choices=FIRST
+    )
+    faces: str | None = option(
+        None, "both: two pictures for each slice, its upper face and its lower one", choices=FACES
+    )
+    turned: str | None = option(None, "how slices were turned over for their lower faces", choices=TURNED)
+    fiducials: str | None = option(
+        None, "marks beside the body that moved with each slice: disc:DIAMETER, two at least"
+    )
     first: str = option("", "file name of the first slice to use; the folder's first when empty")
     last: str = option("", "file name of the last slice to use; the folder's last when empty")
 
@@ -108,7 +137,7 @@ class PhotosReader:
         folder, pattern = split_source(path)
         try:
             files = sorted(item for item in folder.glob(pattern) if item.is_file()) if folder.is_dir() else []
-            found = any(picture_kind(item) in READABLE for item in _sample(files))
+            found = any(picture_kind(item) in READABLE for item in sample(files))
         except (OSError, ValueError):
             return 0.0
         return _CONFIDENCE if found else 0.0
@@ -128,41 +157,73 @@ class PhotosReader:
         """
         folder, _ = split_source(path)
         said = load_stack_file(folder)
-        _check_kind(said, folder)
-        every, matched = list_pictures(path, _masks(said))
-        numbers = self._chosen(every, matched)
+        check_kind(said, folder)
+        shown = what_is_shown(self.section, self.first_shows, self.faces, self.turned, said)
+        every, matched = list_pictures(path, masks(said))
+        every, matched = paired(every, matched, shown)
+        numbers = between(every, matched, self.first, self.last)
         scale_told = scale_said(self._scale, said)
         require_scale(scale_told, path)
-        positions, position_source = positions_of(self._spacing, said, numbers, len(every), path)
-        kept, notices = without_skipped(numbers, said, every)
+        check_silhouettes(shown, scale_told.plane)
+        positions, position_source = positions_of(self._spacing, said, numbers, len(every), path, shown)
+        names = [picture.name for picture in every]
+        used, notices = without_doubles(numbers, positions, names, shown)
+        used, more = without_cap(used, shown, names)
+        kept, skipped = without_skipped(used, said, every)
+        notices = (*notices, *more, *skipped)
         headers = tuple(read_header(every[number]) for number in kept)
-        _check_count(headers, path)
+        check_count(headers, path)
         check_sizes(headers)
         places = dict(zip(numbers, positions, strict=True))
-        folder_first = first_position(self._spacing, said, numbers, path)
+        folder_first = first_position(self._spacing, said, numbers, path, shown)
         z = frozen_floats([places[number] for number in kept])
         slices = ScaledSlices(headers, kept, len(every), Bench(z - folder_first, scale_told))
         paper = 0 if said.background == "dark" else 255
         scale, found = scale_of(slices, said, paper)
+        over = tuple(turned_over(number, shown) for number in kept)
+        decode = decoder(headers, found, paper, over)
+        marks = self._marks(said, decode, tuple(header.path.name for header in headers), scale.spacing)
         return SliceStack(
-            decode=_decoder(headers, found, paper),
+            decode=decode if marks is None else hiding(decode, marks.found),
             names=tuple(header.path.name for header in headers),
             shape=headers[0].size,
             positions=z,
             pixel_spacing=scale.spacing,
-            kind=said.kind or SectionKind.FACE,
-            origins=scale.origins,
+            kind=shown.section,
+            thickness=own_thickness(self._spacing, said, shown, places, folder, kept),
+            origins=placed_when_turned(
+                scale.spacing, scale.origins, headers[0].size, scale_told.principal, over
+            ),
+            marks=None if marks is None else marks.places,
             scale_uncertainty=scale.uncertainty,
-            hints=said.hints(folder, {number + 1: slot for slot, number in enumerate(kept, start=1)}),
-            notices=(*notices, *self._height_checked(said, numbers, len(every), folder), *scale.notices),
+            hints=replace(
+                hints_of(said, folder, kept, over), ends=ends_with_cap(said.ends, shown, z[0] - folder_first)
+            ),
+            notices=(
+                *notices,
+                *self._height_checked(said, numbers, len(every), folder, shown),
+                *scale.notices,
+                *(() if marks is None else marks.notices),
+            ),
             provenance={"pixel size": scale.source, "positions": position_source, **profiles(headers)},
         )
 
     def _height_checked(
-        self, said: StackFile, numbers: tuple[int, ...], total: int, folder: Path
+        self, said: StackFile, numbers: tuple[int, ...], total: int, folder: Path, shown: Shown
     ) -> tuple[Notice, ...]:
         """Return a notice when the height is not the slices' sum; a part of a stack is not checked."""
-        return height_notice(self._spacing, said, total, folder) if len(numbers) == total else ()
+        return height_notice(self._spacing, said, total, folder, shown) if len(numbers) == total else ()
+
+    def _marks(
+        self, said: StackFile, decode: Callable[[int], Picture], names: tuple[str, ...], spacing: FloatArray
+    ) -> Marks | None:
+        """Return the fiducial marks; None when nobody speaks of any."""
+        mark = said.fiducials if self.fiducials is None else fiducials_said(self.fiducials)
+        if mark is None:
+            return None
+        from stackloft_plugins.readers.fiducials import marks_of  # noqa: PLC0415 - needs OpenCV
+
+        return marks_of(decode, names, spacing, mark)
 
     @property
     def _spacing(self) -> SpacingOptions:
@@ -181,64 +242,3 @@ class PhotosReader:
             self.plane,
             self.scale_uncertainty,
         )
-
-    def _chosen(self, every: tuple[Path, ...], matched: tuple[int, ...]) -> tuple[int, ...]:
-        """Return the numbers, from 0, of the slices between `first` and `last`."""
-        names = [path.name for path in every]
-        for flag, name in (("first", self.first), ("last", self.last)):
-            if name and name not in names:
-                raise UsageError(
-                    "no such slice", where=f"reader.{flag}", found=name, expected=f"{names[0]} … {names[-1]}"
-                )
-        start = names.index(self.first) if self.first else 0
-        stop = names.index(self.last) if self.last else len(names) - 1
-        if stop < start:
-            raise UsageError(
-                "last comes before first", where="reader.last", found=f"{self.first}, {self.last}"
-            )
-        return tuple(number for number in matched if start <= number <= stop)
-
-
-def _sample(files: list[Path]) -> list[Path]:
-    """Return the few files worth opening: those that promise a picture first."""
-    return sorted(files, key=lambda path: (path.suffix.lower() not in SUFFIXES, natural_key(path.name)))[
-        :_PROBED
-    ]
-
-
-def _masks(said: StackFile) -> frozenset[str]:
-    return frozenset(override.mask for override in said.slice.values() if override.mask is not None)
-
-
-def _check_kind(said: StackFile, folder: Path) -> None:
-    if said.kind is SectionKind.SLAB:
-        raise InputError(
-            "photographs do not show slabs",
-            where=str(folder / NAME),
-            found='kind = "slab"',
-            expected='kind = "face" or "silhouette"',
-        )
-
-
-def _check_count(headers: tuple[PictureHeader, ...], path: Path) -> None:
-    if len(headers) < MIN_SLICES:
-        raise InputError(
-            "one slice makes no body" if headers else "every slice is skipped",
-            where=str(path),
-            found=headers[0].path.name if headers else "none",
-            expected="at least 2 pictures, better 7 or more",
-        )
-
-
-def _decoder(
-    headers: tuple[PictureHeader, ...], found: tuple[Found | None, ...], paper: int
-) -> Callable[[int], Picture]:
-    if any(found):
-        from stackloft_plugins.readers.reference_find import hide  # noqa: PLC0415 - needs OpenCV
-
-    def decode(number: int) -> Picture:
-        picture = decode_picture(headers[number], paper)
-        reference = found[number]
-        return picture if reference is None else hide(picture, reference)
-
-    return decode

@@ -40,7 +40,7 @@ def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missin
     rows, columns = picture.shape[:2]
     step = max(1.0, max(rows, columns) / _SMALL)
     size = (round(columns / step), round(rows / step))
-    small = cv2.resize(_resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
+    small = cv2.resize(resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
     contrast = contrast_with_plate(small)
     sightings: list[tuple[float, Found]] = []
     cut_off = False
@@ -51,7 +51,7 @@ def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missin
         measured = None if shape is None else _measured(picture, shape, kind, step)
         if shape is not None and measured is not None:
             others = [other for other in shapes if other is not shape]
-            found = _found(measured, shape, others, step, (rows, columns))
+            found = object_found(measured, shape, others, step, (rows, columns))
             sightings.append((shape.to_corner, found))
     if sightings:
         return _outermost(sightings)
@@ -79,7 +79,8 @@ def _outermost(sightings: list[tuple[float, Found]]) -> Found:
     return max(same, key=lambda found: found.size.size)
 
 
-def _resizable(picture: NDArray[Any]) -> NDArray[Any]:
+def resizable(picture: NDArray[Any]) -> NDArray[Any]:
+    """Return the picture in a dtype that OpenCV scales down."""
     return picture if picture.dtype in {np.dtype("uint8"), np.dtype("uint16")} else picture.astype(np.float32)
 
 
@@ -89,7 +90,7 @@ def _cut_in_a_corner(shapes: list[Shape]) -> bool:
 
 def _measured(picture: NDArray[Any], shape: Shape, kind: ReferenceKind, step: float) -> PixelSize | None:
     """Return the size on the whole picture's own pixels; None for what has not the shape when seen so."""
-    grey, (left, top) = _grey_window(picture, shape, step)
+    grey, (left, top) = grey_window(picture, shape, step)
     (x, y), sides, angle = shape.box
     middle = ((x + 0.5) * step - 0.5 - left, (y + 0.5) * step - 0.5 - top)
     lengths = (sides[0] * step, sides[1] * step)
@@ -102,7 +103,7 @@ def _measured(picture: NDArray[Any], shape: Shape, kind: ReferenceKind, step: fl
     return size
 
 
-def _grey_window(
+def grey_window(
     picture: NDArray[Any], shape: Shape, step: float
 ) -> tuple[NDArray[np.float32], tuple[int, int]]:
     """Return the object's surroundings as one channel, the one in which it stands out best."""
@@ -123,7 +124,9 @@ def _grey_window(
     return grey, (left, top)
 
 
-def _found(size: PixelSize, shape: Shape, others: list[Shape], step: float, whole: tuple[int, int]) -> Found:
+def object_found(
+    size: PixelSize, shape: Shape, others: list[Shape], step: float, whole: tuple[int, int]
+) -> Found:
     """Return the object with the window that hides it, which leaves every other object alone."""
     x, y, width, height = (float(value) for value in cv2.boundingRect(shape.outline))
     margin = _MARGIN * size.size + 3 + step

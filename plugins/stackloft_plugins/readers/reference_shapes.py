@@ -71,8 +71,11 @@ def contrast_with_plate(picture: NDArray[Any]) -> NDArray[np.float32]:
     return np.asarray(np.sqrt(((colours - plate) ** 2).mean(axis=2)), dtype=np.float32)
 
 
-def shapes_at(contrast: NDArray[np.float32], part: float) -> list[Shape]:
-    """Return the objects that stand out by more than `part` of the greatest contrast."""
+def shapes_at(contrast: NDArray[np.float32], part: float, least: float | None = None) -> list[Shape]:
+    """Return the objects that stand out by more than `part` of the greatest contrast.
+
+    Smaller ones than `least` pixels are left out; None: than a part of the picture.
+    """
     level = max(_FAINTEST, part * float(np.percentile(contrast, 99.5)))
     rows, columns = contrast.shape
     mask = (contrast > level).astype(np.uint8)
@@ -80,7 +83,7 @@ def shapes_at(contrast: NDArray[np.float32], part: float) -> list[Shape]:
     shapes = []
     for outline in outlines:
         area = cv2.contourArea(outline) + 0.5 * len(outline) + 1.0  # the pixels, not their middles
-        if area < _LEAST * contrast.size:
+        if area < (_LEAST * contrast.size if least is None else least):
             continue
         x, y, width, height = cv2.boundingRect(outline)
         middle = (x + (width - 1) / 2, y + (height - 1) / 2)
@@ -106,6 +109,11 @@ def has_shape(shape: Shape, kind: ReferenceKind) -> bool:
     if kind is ReferenceKind.SQUARE:
         return full and aspect < 1 + _NEAR_SQUARE + 1.0 / short
     return full and _RULER[0] < aspect < _RULER[1]
+
+
+def is_round(shape: Shape) -> bool:
+    """Tell whether an object is round as far as pixels show, and seen whole."""
+    return has_shape(shape, ReferenceKind.DISC)
 
 
 def reference_among(shapes: Sequence[Shape], kind: ReferenceKind) -> Shape | None:

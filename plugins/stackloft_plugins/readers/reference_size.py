@@ -29,6 +29,14 @@ _FEWEST = 8
 
 def disc_size(grey: NDArray[np.float32], centre: tuple[float, float], radius: float) -> PixelSize | None:
     """Return a disc's diameter; `centre` (x, y) and `radius` are a first guess, pixels."""
+    disc = disc_at(grey, centre, radius)
+    return None if disc is None else disc[1]
+
+
+def disc_at(
+    grey: NDArray[np.float32], centre: tuple[float, float], radius: float
+) -> tuple[tuple[float, float], PixelSize] | None:
+    """Return a disc's centre (x, y) and diameter; `centre` and `radius` are a first guess, pixels."""
     x, y = centre
     angle = np.linspace(0, 2 * np.pi, max(64, round(4 * radius)), endpoint=False)
     normals = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -40,7 +48,8 @@ def disc_size(grey: NDArray[np.float32], centre: tuple[float, float], radius: fl
         x, y, radius = circle.x, circle.y, circle.radius
     independent = min(len(points), 2 * np.pi * radius / 2)  # neighbouring lines share pixels
     uncertainty = 2 * circle.spread / np.sqrt(independent)
-    return PixelSize(2 * radius, float(uncertainty), circle.spread / (2 * radius), circle.oblique)
+    size = PixelSize(2 * radius, float(uncertainty), circle.spread / (2 * radius), circle.oblique)
+    return (x, y), size
 
 
 def bar_size(

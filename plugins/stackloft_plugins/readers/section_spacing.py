@@ -12,10 +12,8 @@ from stackloft.contracts.stack_file import NAME, StackFile
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError, UsageError
 from stackloft.model.lengths import parse_length, parse_lengths
-from stackloft.model.notices import Notice
-
-_SURE = 1.01
-"""Slices: how far the sum of the thicknesses may be from the height."""
+from stackloft_plugins.readers.slice_faces import face_steps
+from stackloft_plugins.readers.what_is_shown import Shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +53,12 @@ def pixel_size_of(flags: SpacingOptions, said: StackFile, where: Path) -> tuple[
 
 
 def positions_of(
-    flags: SpacingOptions, said: StackFile, numbers: tuple[int, ...], total: int, where: Path
+    flags: SpacingOptions,
+    said: StackFile,
+    numbers: tuple[int, ...],
+    total: int,
+    where: Path,
+    shown: Shown | None = None,
 ) -> tuple[FloatArray, str]:
     """Return the sections' positions in mm and who said them.
 
@@ -72,6 +75,8 @@ def positions_of(
         Number of slices in the folder; a list of positions may cover all of them or the chosen ones.
     where : Path
         Named in messages.
+    shown : Shown, optional
+        Whether pictures show both faces of each slice.
 
     Raises
     ------
@@ -83,12 +88,12 @@ def positions_of(
     >>> positions_of(SpacingOptions(thickness=5), StackFile(), (0, 1, 2), 3, Path("apple"))[0]
     array([ 0.,  5., 10.])
     """
-    given, thickness, source = _chosen(flags, said, where)
+    given, thickness, source = told_spacing(flags, said, where)
     if given is not None:
         return _fitted(given, numbers, total, source), source
     if thickness is not None:
-        pitch = thickness + kerf_of(flags, said)
-        return (np.array(numbers) - numbers[0]) * pitch, source
+        steps = face_steps(numbers, thickness, kerf_of(flags, said), shown or Shown())
+        return steps - steps[0], source
     raise InputError(
         "distance between the slices is unknown",
         where=str(where),
@@ -96,7 +101,13 @@ def positions_of(
     )
 
 
-def first_position(flags: SpacingOptions, said: StackFile, numbers: tuple[int, ...], where: Path) -> float:
+def first_position(
+    flags: SpacingOptions,
+    said: StackFile,
+    numbers: tuple[int, ...],
+    where: Path,
+    shown: Shown | None = None,
+) -> float:
     """Return where the folder's first face lies, mm, on the scale of `positions_of`.
 
     A camera's distance is that of the folder's first face. Positions given for the chosen slices alone do
@@ -107,10 +118,10 @@ def first_position(flags: SpacingOptions, said: StackFile, numbers: tuple[int, .
     >>> first_position(SpacingOptions(thickness=5), StackFile(), (2, 3), Path("apple"))
     -10.0
     """
-    given, thickness, _ = _chosen(flags, said, where)
+    given, thickness, _ = told_spacing(flags, said, where)
     if given is not None:
         return given[0]
-    return -numbers[0] * ((thickness or 0.0) + kerf_of(flags, said))
+    return -float(face_steps(numbers[:1], thickness or 0.0, kerf_of(flags, said), shown or Shown())[0])
 
 
 def kerf_of(flags: SpacingOptions, said: StackFile) -> float:
@@ -129,37 +140,10 @@ def kerf_of(flags: SpacingOptions, said: StackFile) -> float:
     return kerf
 
 
-def height_notice(flags: SpacingOptions, said: StackFile, total: int, where: Path) -> tuple[Notice, ...]:
-    """Return a notice when a stated height and the sum of the slices' thicknesses disagree.
-
-    The first picture may show the body's own end or a face one slice into it, and so may the last: the sum
-    is sure to one slice. A height below the faces' span is refused where the ends are planned.
-
-    Examples
-    --------
-    >>> said = StackFile(thickness=5.0, height=90.0)
-    >>> height_notice(SpacingOptions(), said, 15, Path("apple"))[0].code
-    'height-mismatch'
-    """
-    _, thickness, _ = _chosen(flags, said, where)
-    if thickness is None or said.height is None:
-        return ()
-    kerf = kerf_of(flags, said)
-    summed = total * thickness + (total - 1) * kerf
-    if abs(said.height - summed) <= (thickness + kerf) * _SURE:
-        return ()
-    message = (
-        f"{where.name}: {total} slices of {thickness:g} mm"
-        + (f" and cuts of {kerf:g} mm" if kerf else "")
-        + f" make {summed:g} mm, but the height is said to be {said.height:g} mm: "
-        f"{abs(said.height - summed) / (thickness + kerf):.1f} slices of difference"
-    )
-    return (Notice("height-mismatch", message),)
-
-
-def _chosen(
+def told_spacing(
     flags: SpacingOptions, said: StackFile, where: Path
 ) -> tuple[tuple[float, ...] | None, float | None, str]:
+    """Return the positions or the thickness that were told, mm, and who told them."""
     if flags.thickness is not None and flags.positions is not None:
         raise UsageError("give --thickness or --positions, not both")
     if flags.thickness is not None:

@@ -25,11 +25,13 @@ from stackloft.model.arrays import read_only
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.alignment import HOW, laid_out
 from stackloft_plugins.segmenters.body_window import body_window, coarse_step, main_body
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.grey import Grey, median_filtered
 from stackloft_plugins.segmenters.half_way import half_way_edge, inside_band, outside_band
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
+from stackloft_plugins.segmenters.local_level import local_levels
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 _FRAME = 0.02  # of the shorter side
@@ -63,18 +65,23 @@ class ColourSegmenter:
     threshold: float | None = option(
         None, "colour difference (L*a*b*) that is body; given, none is sought", gt=0, source="CIE 1976"
     )
+    align: str = option(
+        "auto",
+        "photographs laid down one by one: how they are laid on each other; auto: as stack.toml says, or not",
+        choices=("auto", *HOW),
+    )
 
     def segment(self, stack: SliceStack) -> Segmentation:
-        """Return the segmentation; no slice is decoded here."""
+        """Return the segmentation; slices are decoded here only to be aligned by their sections."""
 
         def field_of(number: int, picture: Picture) -> SectionField:
             said: Mapping[str, Any] = stack.hints.slices.get(number + 1, {})
             name = stack.names[number]
             if "mask" in said:
-                return mask_field(said["mask"], stack.shape, name)
+                return mask_field(said["mask"], stack.shape, name, said.get("turned"))
             return colour_field(picture, said.get("threshold", self.threshold), name)
 
-        return Segmentation(stack, field_of)
+        return laid_out(Segmentation(stack, field_of), self.align)
 
 
 def colour_field(picture: Picture, threshold: float | None, name: str) -> SectionField:
@@ -102,7 +109,11 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
     colours = _scaled(picture[window], full)
     grey = _along(colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8)))
     edge = None if grey is None else half_way_edge(grey, 0.5 * float(grey.max()))
-    if grey is None or edge is None or edge.contrast < max(_NO_STEP * edge.noise, _LEAST_STEP):
+    if (
+        grey is None
+        or edge is None
+        or edge.contrast < max(_NO_STEP * min(edge.noise, edge.grain), _LEAST_STEP)
+    ):
         raise _no_body(name, "no boundary between two colours")
     settled = edge_level(grey, edge)
     return SectionField(
@@ -110,6 +121,7 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
         level=settled,
         offset=(window[0].start, window[1].start),
         threshold=settled,
+        local_levels=local_levels(grey, edge, settled),
     )
 
 

@@ -33,6 +33,7 @@ from stackloft_plugins.segmenters.grey import Grey
 
 _NEAR, _FAR = 1, 2  # pixels: the bands lie between these distances from the boundary
 _ROUNDS = 8
+_NEARBY = 15  # pixels
 _SETTLED = 0.001  # of the contrast
 _STEEPEST = 0.9
 
@@ -45,6 +46,8 @@ class Edge:
     background: float
     noise: float
     """Standard deviation in the outer band, robust."""
+    grain: float
+    """The same of what is left there without shadow and juice, which change slowly."""
     mask: Mask
     """1 inside the body's outline."""
 
@@ -52,6 +55,11 @@ class Edge:
     def level(self) -> float:
         """Half-way between the two."""
         return 0.5 * (self.body + self.background)
+
+    @property
+    def least_noise(self) -> float:
+        """The noise, or the grain where it is less."""
+        return min(self.noise, self.grain)
 
     @property
     def contrast(self) -> float:
@@ -112,7 +120,15 @@ def edge_at(grey: Grey, level: float) -> Edge | None:
         return None
     background = _middle_mean(beyond)
     spread = 1.4826 * float(np.median(np.abs(beyond - background)))
-    return Edge(_middle_mean(within), background, spread, mask)
+    return Edge(_middle_mean(within), background, spread, _grain(grey, outer), mask)
+
+
+def _grain(grey: Grey, band: NDArray[np.bool_]) -> float:
+    """Return the robust standard deviation of the band about its own mean nearby."""
+    weight = band.astype(np.float32)
+    near = cv2.blur(weight, (_NEARBY, _NEARBY))
+    mean = cv2.blur(np.where(band, grey, 0).astype(np.float32), (_NEARBY, _NEARBY)) / np.maximum(near, 1e-6)
+    return 1.4826 * float(np.median(np.abs(grey[band] - mean[band])))
 
 
 def _middle_mean(values: Grey) -> float:

@@ -18,6 +18,7 @@ from stackloft.model.errors import UsageError
 from stackloft.model.lengths import parse_length
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.alignment import HOW, laid_out
 from stackloft.sectioning.array_axis import AXES, MEMORY, along_axis
 from stackloft.sectioning.best_axis import axis_notice, best_axis
 from stackloft.sectioning.object_choice import LARGEST, one_object
@@ -93,6 +94,11 @@ class HistogramSegmenter:
         MEMORY, "scans: what another axis than 0 may take for the whole scan", unit="MB", gt=0
     )
     channel: str = option("luminance", "what grey is made of", choices=tuple(CHANNELS))
+    align: str = option(
+        "auto",
+        "photographs laid down one by one: how they are laid on each other; auto: as stack.toml says, or not",
+        choices=("auto", *HOW),
+    )
 
     def segment(self, stack: SliceStack) -> Segmentation:
         """Return the segmentation; slices are decoded here only when one threshold serves all.
@@ -107,6 +113,10 @@ class HistogramSegmenter:
         """
         if self.method == "manual" and self.threshold is None:
             raise UsageError("method manual needs a threshold", fix="give --set segmenter.threshold=LEVEL")
+        if stack.kind is SectionKind.SLAB and self.align not in {"auto", "none"}:
+            raise UsageError(
+                "a scanner's slices lie where their headers say", where="--align", found=self.align
+            )
         if stack.kind is SectionKind.SLAB and self.scope != "slice":
             return self._of_slabs(stack)
         if self.axis != "0":
@@ -122,7 +132,7 @@ class HistogramSegmenter:
         def field_of(number: int, picture: Picture) -> SectionField:
             return self._field(stack, number, picture, threshold)
 
-        return Segmentation(stack, field_of)
+        return laid_out(Segmentation(stack, field_of), self.align)
 
     def _of_slabs(self, stack: SliceStack) -> Segmentation:
         rules = self._slab_rules()
@@ -160,7 +170,7 @@ class HistogramSegmenter:
         said: Mapping[str, Any] = stack.hints.slices.get(number + 1, {})
         name = stack.names[number]
         if "mask" in said:
-            return mask_field(said["mask"], stack.shape, name)
+            return mask_field(said["mask"], stack.shape, name, said.get("turned"))
         level = said.get("threshold", threshold)
         return slice_field(
             picture, LevelRules(self.method, level, self.channel, stack.hints.background), name

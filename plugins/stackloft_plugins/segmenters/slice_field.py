@@ -19,6 +19,7 @@ from stackloft_plugins.segmenters.flat_field import fit_light
 from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
+from stackloft_plugins.segmenters.local_level import local_levels
 
 _NO_STEP = 4.0  # a boundary whose step is below this many standard deviations of noise is none
 _FAINT = 10.0
@@ -89,12 +90,15 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
         level=level,
         offset=(window[0].start, window[1].start),
         threshold=sign * level,
+        local_levels=local_levels(grey, edge, level) if rules.settles else None,
         notices=tuple(notices),
     )
 
 
-def mask_field(path: Path, shape: tuple[int, int], name: str) -> SectionField:
+def mask_field(path: Path, shape: tuple[int, int], name: str, turned: str | None = None) -> SectionField:
     """Return the field of a slice whose body a person has drawn white on black.
+
+    `turned` says how the picture was turned back that the mask was drawn on: ``left-right``, ``up-down``.
 
     Raises
     ------
@@ -119,6 +123,8 @@ def mask_field(path: Path, shape: tuple[int, int], name: str) -> SectionField:
         raise InputError(
             f"the mask of {name} is of one colour", where=str(path), expected="body white, rest black"
         )
+    if turned is not None:
+        mask = np.ascontiguousarray(mask[:, ::-1] if turned == "left-right" else mask[::-1])
     level = 0.5 * (float(mask.min()) + float(mask.max()))
     return SectionField(read_only(mask.astype(np.float64)), level, threshold=level)
 
@@ -145,7 +151,7 @@ def _full_scale(picture: Picture, coarse: Grey) -> float:
 
 def _contrast_notices(edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
     step, noise = edge.contrast, edge.noise
-    if step < max(_NO_STEP * noise, _NO_STEP_OF_SCALE * scale):
+    if step < max(_NO_STEP * edge.least_noise, _NO_STEP_OF_SCALE * scale):
         raise _no_body(name, f"a step of {step:.3g} grey levels at the boundary, noise {noise:.2g}")
     if step >= max(_FAINT * noise, _FAINT_OF_SCALE * scale):
         return ()

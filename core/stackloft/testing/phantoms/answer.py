@@ -22,6 +22,7 @@ KEYS = (
     "reference",
     "reference_height",
     "reference_stays",
+    "fiducials",
     "camera",
 )
 """What a folder can be made to tell; ``ends`` names the kinds of end, ``end_lengths`` their distances too."""

@@ -18,6 +18,7 @@ from stackloft.testing.phantoms.camera import Camera
 from stackloft.testing.phantoms.coverage import coverage
 from stackloft.testing.phantoms.files import made_folder, write_json, write_whole
 from stackloft.testing.phantoms.frame import Frame, framed
+from stackloft.testing.phantoms.laying import Laying
 from stackloft.testing.phantoms.phantom import Phantom
 from stackloft.testing.phantoms.picture_format import FORMATS, encoded
 from stackloft.testing.phantoms.placing import Placing
@@ -26,6 +27,8 @@ from stackloft.testing.phantoms.reference_object import GREY, ReferenceObject
 
 LEVELS = {"white": (230.0, 60.0), "black": (25.0, 200.0)}
 """Grey levels of plate and body in noise-free pictures, of 255."""
+MARKED = (64.0, 110.0, 120.0)
+"""Colour of fiducial marks, in realistic pictures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,8 @@ class Photographs:
     """None: every picture at one scale, as a scanner sees it."""
     reference: ReferenceObject | None = None
     """An object of known size on the plate."""
+    laying: Laying | None = None
+    """None: every slice lies on the one before; else how far off it does."""
     tell: tuple[str, ...] = ("kind", "pixel_size", "thickness", "specimen")
     """Keys of ``stack.toml`` (`stackloft.testing.phantoms.answer.KEYS`); none: no such file."""
 
@@ -96,11 +101,12 @@ class Photographs:
         toml = stack_toml(phantom, positions, self.tell, self._told())
         cuts = [phantom.section(float(z), self.points) for z in positions]
         frames = self.frames(cuts, positions)
+        marks = self.laying.outlines(cuts) if self.laying is not None else []
         made_folder(folder)
         digits = max(2, len(str(len(cuts))))
         files = []
         for i, (z, loops) in enumerate(zip(positions, cuts, strict=True), start=1):
-            content = self.encoded(self.picture(phantom, float(z), loops, frames[i - 1], i))
+            content = self.encoded(self.picture(phantom, float(z), loops, frames[i - 1], i, marks))
             files.append(write_whole(folder / f"slice_{i:0{digits}d}.{self.suffix}", content))
         if toml:
             files.append(write_whole(folder / "stack.toml", toml.encode()))
@@ -109,17 +115,25 @@ class Photographs:
 
     def frames(self, cuts: Sequence[Sequence[Loop]], positions: FloatArray) -> list[Frame]:
         """Return where each picture's pixels lie on its own cut face."""
-        frame = framed(cuts, self.pixel_size, self.margin, self.turn, self.mirror)
+        margin = self.margin + (self.laying.room(cuts) if self.laying is not None else 0.0)
+        frame = framed(cuts, self.pixel_size, margin, self.turn, self.mirror)
         if self.reference is not None:
             frame = self.reference.widened(frame)
-        return [frame] * len(positions) if self.camera is None else self.camera.frames(frame, positions)
+        frames = [frame] * len(positions) if self.camera is None else self.camera.frames(frame, positions)
+        return frames if self.laying is None else self.laying.frames(frames, cuts)
 
     def picture(
-        self, phantom: Phantom, z: float, loops: tuple[Loop, ...], frame: Frame, index: int = 1
+        self,
+        phantom: Phantom,
+        z: float,
+        loops: tuple[Loop, ...],
+        frame: Frame,
+        index: int = 1,
+        marks: Sequence[Loop] = (),
     ) -> NDArray[Any]:
         """Return one section's picture: (rows, columns) or (rows, columns, 3), uint8 or uint16."""
         covered = coverage(frame.polygons(loops), frame.shape)
-        thing = self._thing(frame, index)
+        thing = _together(self._thing(frame, index), _painted(marks, frame))
         if self.realism is None:
             plate, body = LEVELS[self.plate]
             grey = plate + (body - plate) * covered
@@ -163,11 +177,28 @@ class Photographs:
             told["reference"] = f'"{self.reference.kind}:{self.reference.size:.12g}mm"'
             told["reference_height"] = f'"{self.reference.height:.12g}mm"'
             told["reference_stays"] = str(self.reference.stays).lower()
+        if self.laying is not None and self.laying.marks:
+            told["fiducials"] = f'"disc:{self.laying.marks:.12g}mm"'
         if self.camera is not None:
             told["camera"] = (
                 f'{{ distance = "{self.camera.distance:.12g}mm", plane = "{self.camera.plane}" }}'
             )
         return told
+
+
+def _painted(marks: Sequence[Loop], frame: Frame) -> Thing | None:
+    """Return the marks' coverage and colour; None when there are none."""
+    if not marks:
+        return None
+    colour = np.array(MARKED)[:, None, None] * np.ones((1, *frame.shape))
+    return coverage(frame.polygons(marks), frame.shape), colour
+
+
+def _together(one: Thing | None, other: Thing | None) -> Thing | None:
+    """Return two things, which do not overlap, as one."""
+    if one is None or other is None:
+        return one or other
+    return one[0] + other[0], np.where(other[0] > 0, other[1], one[1])
 
 
 def _body_frame(phantom: Phantom, z: float, frame: Frame) -> FloatArray:

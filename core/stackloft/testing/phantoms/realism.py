@@ -9,6 +9,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from stackloft.model.arrays import FloatArray
 from stackloft.testing.phantoms.flesh import PAINTERS, Painter, relief
+from stackloft.testing.phantoms.kitchen import Kitchen
 
 Rgb = tuple[float, float, float]
 
@@ -40,6 +41,8 @@ class Realism:
     """Standard deviation of the sensor's noise, grey levels of 255."""
     quality: int = 92
     """Of JPEG and WebP, 1–100."""
+    kitchen: Kitchen | None = None
+    """Reflections, shadow, juice and crumbs; None: none of them."""
 
     @classmethod
     def of(cls, name: str, seed: int = 0) -> Realism:
@@ -92,10 +95,14 @@ def photograph(
     body = painter(body_frame, depth, rng, look.texture, look.rim)
     grain = relief(rng, covered.shape, 1.2) * 1.2 + relief(rng, covered.shape, 40) * 1.5
     ground = np.asarray(look.plate or plate)[:, None, None] + grain
+    if look.kitchen is not None:
+        ground = look.kitchen.plate(ground, covered, pixel_size, look.seed, index)
+        body = look.kitchen.flesh(body, depth, pixel_size, look.seed, index)
     scene = covered * body + (1 - covered) * ground
     if thing is not None:
         scene = thing[0] * thing[1] + (1 - thing[0]) * scene
-    scene = np.stack([gaussian_filter(channel, look.blur, mode="nearest") for channel in scene])
+    blur = look.blur if look.kitchen is None else look.kitchen.blur(look.blur, index)
+    scene = np.stack([gaussian_filter(channel, blur, mode="nearest") for channel in scene])
     scene = scene * _lamp(covered.shape, look)
     shot = look.noise * np.sqrt(0.35 + 0.65 * np.clip(scene, 0, 255) / 255)
     scene = scene + shot * rng.normal(size=scene.shape)
