@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import IntArray
 from stackloft.model.errors import UsageError
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture
+from stackloft.model.slice_stack import Picture, turn_matrix
 from stackloft.report.thumbnails import Rgb, Window, as_rgb, resizable, resized, window_of
 
 SIDE = 520
@@ -47,6 +47,8 @@ class SliceFigure:
     """Panel pixels per millimetre along x and y."""
     origin: tuple[float, float]
     """Where x = 0, y = 0 lies: (column, row), panel pixels."""
+    turn: float = 0.0
+    """rad by which the slice was turned to lie on its neighbours; the panels are as the picture is."""
 
 
 class FigureSink:
@@ -107,7 +109,8 @@ class FigureSink:
         grey = _own_grey(section)
         low, high = float(grey.min()), float(grey.max())
         stretch = 255.0 / (high - low) if high > low else 0.0
-        x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index]
+        turn = 0.0 if self._stack.turns is None else float(self._stack.turns[index])
+        x, y = (0.0, 0.0) if self._stack.origins is None else self._stack.origins[index] @ turn_matrix(turn)
         row, column = self._stack.pixel_spacing[index]
         along = size[0] / part.shape[1], size[1] / part.shape[0]
         seen = as_rgb(resized(resizable(part), size))
@@ -127,6 +130,7 @@ class FigureSink:
                 (0.5 - window.left - x / column) * along[0] - 0.5,
                 (0.5 - window.top - y / row) * along[1] - 0.5,
             ),
+            turn=turn,
         )
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from stackloft.model.arrays import FloatArray
+from stackloft.model.slice_stack import turn_matrix
 from stackloft.report.figure_sink import SIDE, SliceFigure
 from stackloft.report.loft_lines import LoftLine
 from stackloft.report.sheet import FAINT, INK, MOUNT, PAPER, draw_scale_bar, font, line_height, shortened
@@ -69,7 +70,9 @@ def _drawn(picture: Rgb, figure: SliceFigure, lines: Sequence[LoftLine]) -> Rgb:
 
 
 def _pixels(points: FloatArray, figure: SliceFigure) -> FloatArray:
-    pixels: FloatArray = points[:, :2] * np.array(figure.per_mm) + np.array(figure.origin)
+    pixels: FloatArray = points[:, :2] @ turn_matrix(figure.turn) * np.array(figure.per_mm) + np.array(
+        figure.origin
+    )
     return pixels
 
 
