@@ -46,8 +46,8 @@ class Edge:
     background: float
     noise: float
     """Standard deviation in the outer band, robust."""
-    grain: float
-    """The same of what is left there without shadow and juice, which change slowly."""
+    span: float
+    """From the 5th to the 95th hundredth of the outer band."""
     mask: Mask
     """1 inside the body's outline."""
 
@@ -55,11 +55,6 @@ class Edge:
     def level(self) -> float:
         """Half-way between the two."""
         return 0.5 * (self.body + self.background)
-
-    @property
-    def least_noise(self) -> float:
-        """The noise, or the grain where it is less."""
-        return min(self.noise, self.grain)
 
     @property
     def contrast(self) -> float:
@@ -120,11 +115,13 @@ def edge_at(grey: Grey, level: float) -> Edge | None:
         return None
     background = _middle_mean(beyond)
     spread = 1.4826 * float(np.median(np.abs(beyond - background)))
-    return Edge(_middle_mean(within), background, spread, _grain(grey, outer), mask)
+    low, high = np.percentile(beyond, (5, 95))
+    return Edge(_middle_mean(within), background, spread, float(high - low), mask)
 
 
-def _grain(grey: Grey, band: NDArray[np.bool_]) -> float:
-    """Return the robust standard deviation of the band about its own mean nearby."""
+def grain(grey: Grey, mask: Mask) -> float:
+    """Return the outer band's noise without what changes slowly: shadow and juice beside the body."""
+    band = outside_band(mask)
     weight = band.astype(np.float32)
     near = cv2.blur(weight, (_NEARBY, _NEARBY))
     mean = cv2.blur(np.where(band, grey, 0).astype(np.float32), (_NEARBY, _NEARBY)) / np.maximum(near, 1e-6)

@@ -17,7 +17,7 @@ from stackloft_plugins.segmenters.body_window import background_of, body_window,
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.flat_field import fit_light
 from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
-from stackloft_plugins.segmenters.half_way import Edge, edge_at, half_way_edge
+from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import local_levels
 
@@ -82,7 +82,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     grey: Grey = sign * plain if light is None else light.flattened(plain, window, sign)
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
-    notices = list(_contrast_notices(edge, _full_scale(picture, coarse), name))
+    notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
     if rules.background is None and not background.sure:
         notices.append(_unsure(name))
     return SectionField(
@@ -149,9 +149,10 @@ def _full_scale(picture: Picture, coarse: Grey) -> float:
     return 255.0 if picture.dtype == np.uint8 else float(np.ptp(coarse))
 
 
-def _contrast_notices(edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
+def _contrast_notices(grey: Grey, edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
     step, noise = edge.contrast, edge.noise
-    if step < max(_NO_STEP * edge.least_noise, _NO_STEP_OF_SCALE * scale):
+    lost = step < _NO_STEP * noise and step < _NO_STEP * grain(grey, edge.mask)
+    if lost or step < _NO_STEP_OF_SCALE * scale:
         raise _no_body(name, f"a step of {step:.3g} grey levels at the boundary, noise {noise:.2g}")
     if step >= max(_FAINT * noise, _FAINT_OF_SCALE * scale):
         return ()
