@@ -29,7 +29,7 @@ from stackloft.sectioning.alignment import HOW, laid_out
 from stackloft_plugins.segmenters.body_window import body_window, coarse_step, main_body
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.grey import Grey, median_filtered
-from stackloft_plugins.segmenters.half_way import half_way_edge, inside_band, outside_band
+from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge, inside_band, outside_band
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import local_levels
 from stackloft_plugins.segmenters.slice_field import mask_field
@@ -109,11 +109,7 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
     colours = _scaled(picture[window], full)
     grey = _along(colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8)))
     edge = None if grey is None else half_way_edge(grey, 0.5 * float(grey.max()))
-    if (
-        grey is None
-        or edge is None
-        or edge.contrast < max(_NO_STEP * min(edge.noise, edge.grain), _LEAST_STEP)
-    ):
+    if grey is None or edge is None or _is_lost(grey, edge):
         raise _no_body(name, "no boundary between two colours")
     settled = edge_level(grey, edge)
     return SectionField(
@@ -123,6 +119,12 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
         threshold=settled,
         local_levels=local_levels(grey, edge, settled),
     )
+
+
+def _is_lost(grey: Grey, edge: Edge) -> bool:
+    """Tell whether the step is no more than noise, shadow and juice put aside."""
+    step = edge.contrast
+    return step < _LEAST_STEP or (step < _NO_STEP * edge.noise and step < _NO_STEP * grain(grey, edge.mask))
 
 
 def _scaled(part: Picture, full: float) -> Grey:

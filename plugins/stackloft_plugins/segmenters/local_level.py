@@ -22,6 +22,8 @@ from stackloft_plugins.segmenters.half_way import Edge, inside_band, outside_ban
 
 UNEVEN = 0.05
 """Of the contrast: standard deviation around the outline above which the level is made local."""
+_SPAN = 0.2
+"""Of the contrast: what the outer band must span for a closer look."""
 REACH = 8.0
 """Pixels: standard deviation of the window in which the two sides are averaged."""
 _OUTLIER = 4.0  # robust standard deviations: a reflection or a crumb in a band
@@ -51,6 +53,8 @@ def local_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
     >>> [round(float(found[60, column])) for column in (40, 79)]
     [70, 85]
     """
+    if edge.span < _SPAN * edge.contrast:
+        return None
     inner, outer = inside_band(edge.mask), outside_band(edge.mask)
     within = _sides_mean(grey, inner & _usual(grey, inner))
     beyond = _sides_mean(grey, outer & _usual(grey, outer))
