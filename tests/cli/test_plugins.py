@@ -38,7 +38,7 @@ def test_show_as_json_names_the_same_options(stackloft):
     jsonschema.Draft202012Validator.check_schema(details["schema"])
     jsonschema.validate({"tolerance": option["default"]}, details["schema"])
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({"tolerence": 0.1}, details["schema"])
+        jsonschema.validate({"treshold": 0.1}, details["schema"])
 
 
 def test_a_name_in_several_families_shows_all_of_them(stackloft):
