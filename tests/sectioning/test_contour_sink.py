@@ -9,7 +9,8 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Hints, SectionKind, SliceStack
-from stackloft.sectioning.contour_sink import AHEAD, THREADS, feed, gathered, trace_stack
+from stackloft.sectioning.ahead import AHEAD, THREADS
+from stackloft.sectioning.contour_sink import feed, gathered, trace_stack
 
 
 def picture(number):

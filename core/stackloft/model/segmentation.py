@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-from stackloft.model.arrays import FloatArray
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
 
@@ -14,8 +19,8 @@ from stackloft.model.slice_stack import Picture, SliceStack
 class SectionField:
     """One slice's grey levels, oriented so that the body is above the level."""
 
-    values: FloatArray
-    """(rows, columns) of the crop."""
+    values: NDArray[Any]
+    """(rows, columns) of the crop, of any real dtype: a scan's own whole grey levels need no copy."""
     level: float
     """Body where values > level; the boundary lies sub-pixel on values = level."""
     offset: tuple[int, int] = (0, 0)
@@ -25,6 +30,24 @@ class SectionField:
     local_levels: FloatArray | None = None
     """(rows, columns) or None: the level pixel by pixel where it varies (uneven light)."""
     notices: tuple[Notice, ...] = ()
+
+    def above(self) -> BoolArray:
+        """Return where the body is, (rows, columns).
+
+        Examples
+        --------
+        >>> SectionField(np.array([[2, 3]], dtype=np.int16), 2.5).above().tolist()
+        [[False, True]]
+        """
+        if self.local_levels is not None:
+            return np.asarray(self.values > self.local_levels)
+        whole = self.values.dtype.kind in "iu" and math.isfinite(self.level)
+        return np.asarray(self.values > (math.floor(self.level) if whole else self.level))
+
+    def relative(self) -> FloatArray:
+        """Return the field above its level, float64: zero on the boundary."""
+        level = self.level if self.local_levels is None else self.local_levels
+        return np.asarray(np.subtract(self.values, level, dtype=np.float64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

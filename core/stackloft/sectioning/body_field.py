@@ -12,7 +12,7 @@ from stackloft.model.arrays import BoolArray
 from stackloft.model.scale import scale_of_slices
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Hints, Picture, SliceStack
-from stackloft.sectioning.linked_pieces import LinkedPieces
+from stackloft.sectioning.linked_pieces import Corner, LinkedPieces
 from stackloft.sectioning.voids import VoidFinder
 
 MARGIN = 12
@@ -34,22 +34,47 @@ class BodyField:
         """Return the field of the body's slice `number`."""
         index = number + self.first
         section = self.whole.field_of(index, picture)
-        pieces = self.links.pieces(index)
-        mine = np.concatenate([[False], self.own[self.links.of_slice(index)]])[pieces]
-        window = _window(mine, section)
-        row, column = section.offset
-        inner = (slice(window[0].start - row, window[0].stop - row),
-                 slice(window[1].start - column, window[1].stop - column))  # fmt: skip
+        own = self.own[self.links.of_slice(index)]
+        closed, closed_corner = self.voids.closed(index) if self.whole.fill_voids else (_NONE, (0, 0))
+        if len(own) == 1 and own[0] and not closed.size and not self.whole.labels:
+            return _cropped(section, _window(*self.links.shape(index), section))
+        pieces, corner = self.links.pieces(index)
+        shown = np.concatenate([[False], own])[pieces]
+        left, top, width, height = cv2.boundingRect(shown.view(np.uint8))
+        window = _window((corner[0] + top, corner[1] + left), (height, width), section)
+        mine = placed(shown, corner, window)
         if self.whole.labels:
-            return SectionField(mine[window].astype(np.float64), 0.5, _corner(window), 0.5)
-        local = None if section.local_levels is None else section.local_levels[inner]
-        level = section.level if local is None else local
-        field = section.values[inner] - level
-        field = np.where(mine[window], field, -np.abs(field))
-        if self.whole.fill_voids:
-            closed = touching(self.voids.closed(index)[window], mine[window])
-            field = np.where(closed, np.maximum(np.abs(field), np.finfo(float).tiny), field)
-        return replace(section, values=field + level, offset=_corner(window), local_levels=local)
+            return SectionField(mine.astype(np.float64), 0.5, _corner(window), 0.5)
+        part = _cropped(section, window)
+        level = part.level if part.local_levels is None else part.local_levels
+        field = part.relative()
+        field = np.where(mine, field, -np.abs(field))
+        if closed.size:
+            within = touching(placed(closed, closed_corner, window), mine)
+            field = np.where(within, np.maximum(np.abs(field), np.finfo(float).tiny), field)
+        return replace(part, values=field + level)
+
+
+_NONE: BoolArray = np.zeros((0, 0), dtype=np.bool_)
+
+
+def _cropped(section: SectionField, window: tuple[slice, slice]) -> SectionField:
+    row, column = section.offset
+    inner = (slice(window[0].start - row, window[0].stop - row),
+             slice(window[1].start - column, window[1].stop - column))  # fmt: skip
+    local = None if section.local_levels is None else section.local_levels[inner]
+    return replace(section, values=section.values[inner], offset=_corner(window), local_levels=local)
+
+
+def placed(crop: BoolArray, corner: Corner, window: tuple[slice, slice]) -> BoolArray:
+    """Return a crop of a slice on another window of it; False where the crop does not reach."""
+    row, column = corner[0] - window[0].start, corner[1] - window[1].start
+    shape = (window[0].stop - window[0].start, window[1].stop - window[1].start)
+    placed = np.zeros(shape, dtype=np.bool_)
+    part = crop[max(-row, 0) : max(shape[0] - row, 0), max(-column, 0) : max(shape[1] - column, 0)]
+    row, column = max(row, 0), max(column, 0)
+    placed[row : row + part.shape[0], column : column + part.shape[1]] = part
+    return placed
 
 
 def touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
@@ -59,14 +84,13 @@ def touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
     return np.asarray(np.isin(pieces, np.unique(pieces[voids & beside])) & voids)
 
 
-def _window(mine: BoolArray, section: SectionField) -> tuple[slice, slice]:
-    """Return rows and columns of the body and a margin, within the section's own crop."""
+def _window(corner: Corner, shape: tuple[int, int], section: SectionField) -> tuple[slice, slice]:
+    """Return rows and columns of a body's box and a margin, within the section's own crop; all, if empty."""
     window = []
     for axis in (0, 1):
-        used = np.flatnonzero(mine.any(axis=1 - axis))
         low, high = section.offset[axis], section.offset[axis] + section.values.shape[axis]
-        start, stop = (int(used[0]), int(used[-1])) if len(used) else (low, high - 1)
-        window.append(slice(max(low, start - MARGIN), min(high, stop + 1 + MARGIN)))
+        start, stop = (corner[axis], corner[axis] + shape[axis]) if shape[axis] else (low, high)
+        window.append(slice(max(low, start - MARGIN), min(high, stop + MARGIN)))
     return window[0], window[1]
 
 

@@ -39,8 +39,7 @@ def clean_field(section: SectionField, *, labels: bool, rules: TraceRules | None
     >>> int((field > 0).sum()), float(field[5, 5]), float(field[16, 16])
     (100, 4.0, -5.0)
     """
-    level = section.level if section.local_levels is None else section.local_levels
-    field = np.asarray(section.values - level, dtype=np.float64)
+    field = section.relative()
     if labels or not (field > 0).any():
         return field
     rules = rules or TraceRules()

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -14,15 +12,10 @@ from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
+from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
-
-THREADS = 2
-"""Threads that decode and segment."""
-
-AHEAD = 2
-"""Slices decoded before they are asked for; with the one in hand, the pictures in memory."""
 
 _NAMED = 3  # slices named in a notice that stands for several
 
@@ -136,25 +129,14 @@ def feed(segmentation: Segmentation, sinks: Sequence[Sink]) -> list[Any]:
 def decoded_ahead(segmentation: Segmentation) -> Iterator[tuple[int, Picture, SectionField]]:
     """Yield slice number, picture and field in order, decoding and segmenting a little ahead.
 
-    Two threads work at most `AHEAD` slices ahead of the one in hand. Closing the iterator, or an
-    error in a slice, ends the work on those not begun.
+    Two threads work ahead (`worked_ahead`).
     """
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
         picture = segmentation.stack.decode(index)
         return index, picture, segmentation.field_of(index, picture)
 
-    pool = ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-decode")
-    waiting: deque[Future[tuple[int, Picture, SectionField]]] = deque()
-    try:
-        for index in range(len(segmentation)):
-            waiting.append(pool.submit(work, index))
-            if len(waiting) > AHEAD:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+    yield from worked_ahead(len(segmentation), work)
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:

@@ -9,7 +9,8 @@ r"""Pieces of slices linked into three-dimensional objects, one slice at a time 
 
 from __future__ import annotations
 
-import zlib
+from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -17,8 +18,30 @@ from numpy.typing import NDArray
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 
-Pieces = NDArray[np.int32]
-"""(rows, columns) number of the piece that a pixel belongs to, from 1; 0: none"""
+Pieces = NDArray[Any]
+"""(rows, columns), whole numbers: the piece that a pixel belongs to, from 1; 0: none"""
+Corner = tuple[int, int]
+"""(row, column) of a crop's first pixel in the slice."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Runs:
+    """A slice's pieces as runs of equal numbers."""
+
+    starts: NDArray[np.int32]
+    numbers: NDArray[Any]
+    shape: tuple[int, int]
+    corner: Corner
+
+    @staticmethod
+    def of(pieces: Pieces, corner: Corner) -> _Runs:
+        flat = pieces.ravel()
+        starts = np.concatenate([[0], np.flatnonzero(flat[1:] != flat[:-1]) + 1])[: flat.size]
+        return _Runs(starts.astype(np.int32), flat[starts], (pieces.shape[0], pieces.shape[1]), corner)
+
+    def pieces(self) -> Pieces:
+        size = self.shape[0] * self.shape[1]
+        return np.repeat(self.numbers, np.diff(self.starts, append=size)).reshape(self.shape)
 
 
 class LinkedPieces:
@@ -27,7 +50,8 @@ class LinkedPieces:
     Parameters
     ----------
     share : float
-        Least part of the smaller of two pieces that must overlap to link them; 0: one pixel.
+        Least part of the smaller of two pieces that must overlap to link them, sizes being pixels; 0: one
+        pixel.
 
     Examples
     --------
@@ -44,31 +68,48 @@ class LinkedPieces:
         self._starts: list[int] = []
         self._sizes: list[FloatArray] = []
         self._labels: list[IntArray] = []
-        self._packed: list[tuple[bytes, tuple[int, int]]] = []
-        self._last: Pieces | None = None
+        self._runs: list[_Runs] = []
+        self._last: tuple[Pieces, Corner] | None = None
 
-    def add(self, pieces: Pieces, sizes: FloatArray, labels: IntArray | None = None) -> None:
-        """Take a slice's pieces, numbered 1 … n, the size of each and its label; only equal labels link."""
+    def add(
+        self,
+        pieces: Pieces,
+        sizes: FloatArray,
+        labels: IntArray | None = None,
+        corner: Corner = (0, 0),
+        before: tuple[Pieces, Corner] | None = None,
+    ) -> None:
+        """Take a slice's pieces, numbered 1 … n, the size of each and its label; only equal labels link.
+
+        The pieces may be a crop of the slice whose first pixel lies at `corner`; `before` is another crop
+        of the slice before, where the one that was given then was too narrow.
+        """
+        if before is not None:
+            self._last = before
         start = len(self._parents)
         self._starts.append(start)
         self._parents += range(start, start + len(sizes))
         self._labels.append(np.zeros(len(sizes), dtype=np.int64) if labels is None else labels)
         self._sizes.append(np.asarray(sizes, dtype=np.float64))
         if self._last is not None and len(sizes):
-            before = self._starts[-2]
-            for a, b in self._linking(self._last, pieces):
+            earlier = self._starts[-2]
+            for a, b in self._linking(*_common(self._last, (pieces, corner))):
                 if self._labels[-2][a - 1] == self._labels[-1][b - 1]:
-                    self._join(before + a - 1, start + b - 1)
-        self._last = pieces
-        self._packed.append((zlib.compress(pieces.tobytes(), 1), (pieces.shape[0], pieces.shape[1])))
+                    self._join(earlier + a - 1, start + b - 1)
+        self._last = (pieces, corner)
+        self._runs.append(_Runs.of(pieces, corner))
 
     def __len__(self) -> int:
-        return len(self._packed)
+        return len(self._runs)
 
-    def pieces(self, number: int) -> Pieces:
-        """Return the pieces of a slice, as they were taken."""
-        packed, shape = self._packed[number]
-        return np.frombuffer(zlib.decompress(packed), dtype=np.int32).reshape(shape)
+    def pieces(self, number: int) -> tuple[Pieces, Corner]:
+        """Return the pieces of a slice, as they were taken, and the crop's corner."""
+        runs = self._runs[number]
+        return runs.pieces(), runs.corner
+
+    def shape(self, number: int) -> tuple[Corner, tuple[int, int]]:
+        """Return the corner and the shape of a slice's crop."""
+        return self._runs[number].corner, self._runs[number].shape
 
     def labels(self) -> IntArray:
         """Return every piece's label."""
@@ -90,11 +131,12 @@ class LinkedPieces:
         return np.argsort(np.argsort(first))[number] if len(roots) else roots
 
     def _linking(self, a: Pieces, b: Pieces) -> IntArray:
+        """Return the linked pairs (piece of `a`, piece of `b`) of two slices' common part."""
         pairs, shared = overlaps(a, b)
         if not self._share or not len(pairs):
             return pairs
-        areas = np.bincount(a.ravel())[pairs[:, 0]], np.bincount(b.ravel())[pairs[:, 1]]
-        return np.asarray(pairs[shared >= self._share * np.minimum(*areas)])
+        before, after = self._sizes[-2][pairs[:, 0] - 1], self._sizes[-1][pairs[:, 1] - 1]
+        return np.asarray(pairs[shared >= self._share * np.minimum(before, after)])
 
     def _join(self, a: int, b: int) -> None:
         first, second = self._root(a), self._root(b)
@@ -117,14 +159,69 @@ def overlaps(a: Pieces, b: Pieces) -> tuple[IntArray, IntArray]:
     ([[1, 3], [2, 3]], [1, 1])
     """
     both = (a > 0) & (b > 0)
-    if not both.any():
+    shared = int(np.count_nonzero(both))
+    if not shared:
         return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    width = int(b.max()) + 1
-    pairs, shared = np.unique(a[both].astype(np.int64) * width + b[both], return_counts=True)
-    return np.column_stack([pairs // width, pairs % width]), shared.astype(np.int64)
+    if a.dtype == b.dtype == np.uint8 and a.max() == b.max() == 1:  # two slices of one piece each
+        return np.ones((1, 2), dtype=np.int64), np.array([shared])
+    first, second = a[both].astype(np.int64), b[both].astype(np.int64)
+    width = int(second.max()) + 1
+    pairs, counts = np.unique(first * width + second, return_counts=True)
+    return np.column_stack([pairs // width, pairs % width]), counts.astype(np.int64)
+
+
+def _common(first: tuple[Pieces, Corner], second: tuple[Pieces, Corner]) -> tuple[Pieces, Pieces]:
+    """Return the parts of two crops that lie over each other."""
+    (a, (a_row, a_column)), (b, (b_row, b_column)) = first, second
+    top, left = max(a_row, b_row), max(a_column, b_column)
+    bottom = max(top, min(a_row + a.shape[0], b_row + b.shape[0]))
+    right = max(left, min(a_column + a.shape[1], b_column + b.shape[1]))
+    return (
+        a[top - a_row : bottom - a_row, left - a_column : right - a_column],
+        b[top - b_row : bottom - b_row, left - b_column : right - b_column],
+    )
+
+
+def body_pieces(body: BoolArray) -> tuple[Pieces, IntArray, Corner]:
+    """Return the 4-connected pieces of a slice's body on their bounding box, their pixels, and its corner.
+
+    A single piece, the usual case, is its own numbering and known by its outline alone.
+
+    Examples
+    --------
+    >>> body = np.zeros((6, 9), dtype=bool)
+    >>> body[2:4, 3:8] = True
+    >>> pieces, sizes, corner = body_pieces(body)
+    >>> pieces.shape, sizes.tolist(), corner
+    ((2, 5), [10], (2, 3))
+    """
+    left, top, width, height = cv2.boundingRect(body.view(np.uint8))
+    crop = body[top : top + height, left : left + width]
+    bits = np.ascontiguousarray(crop).view(np.uint8)
+    if bits.size and single_piece(bits):
+        return bits, np.array([np.count_nonzero(bits)]), (top, left)
+    pieces, sizes = pieces_of(crop) if bits.size else (bits, np.zeros(0, dtype=np.int64))
+    return pieces, sizes, (top, left)
+
+
+def single_piece(bits: NDArray[np.uint8]) -> bool:
+    """Return True when the pixels certainly form one 4-connected piece; a pinched one may be missed."""
+    outlines, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    if tree is None or np.count_nonzero(tree[0, :, 3] < 0) != 1:
+        return False
+    return not any(_pinched(bits, outline[:, 0]) for outline in outlines)
+
+
+def _pinched(bits: NDArray[np.uint8], chain: NDArray[Any]) -> bool:
+    """Return whether a chain of border pixels steps between two that touch by their corners alone."""
+    following = np.roll(chain, -1, axis=0)
+    slanting = (chain != following).all(axis=1)
+    x, y = chain[slanting].T
+    to_x, to_y = following[slanting].T
+    return bool(((bits[y, to_x] == 0) & (bits[to_y, x] == 0)).any())
 
 
 def pieces_of(mask: BoolArray, connectivity: int = 4) -> tuple[Pieces, IntArray]:
     """Return the connected pieces of a slice's mask and their sizes in pixels."""
-    _, pieces, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=connectivity)
-    return np.asarray(pieces, np.int32), np.asarray(stats[1:, cv2.CC_STAT_AREA], np.int64)
+    count, pieces = cv2.connectedComponents(mask.astype(np.uint8), connectivity=connectivity)
+    return np.asarray(pieces, np.int32), np.bincount(pieces.ravel(), minlength=count)[1:].astype(np.int64)

@@ -14,8 +14,9 @@ slice). Of a label map every label is a body, however near another, and its stra
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
@@ -23,13 +24,18 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
-from stackloft.sectioning.body_field import BodyField, cut_stack, touching
-from stackloft.sectioning.contour_sink import decoded_ahead
-from stackloft.sectioning.linked_pieces import LinkedPieces, Pieces, pieces_of
-from stackloft.sectioning.voids import VoidFinder, void_notice
+from stackloft.sectioning.ahead import worked_ahead
+from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed, touching
+from stackloft.sectioning.kept_slices import KeptSlices
+from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, body_pieces, pieces_of
+from stackloft.sectioning.voids import CRACK, VoidFinder, closed_background, void_notice
 
 CRUMB = 0.02
 """Objects below this fraction of the largest are not worth a word."""
+KEPT = MARGIN + 2
+"""Pixels kept as they were decoded around all bodies of a slice."""
+FRAME = 2 * CRACK + 1
+"""Pixels around the bodies within which background is looked through for what is closed in."""
 FEWEST = 12
 """Pixels of a body's slice; slices at its ends with fewer give no contour and are left out."""
 
@@ -49,7 +55,7 @@ class BodyObject:
 def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
     """Return the bodies: the largest first, or those of a label map by label.
 
-    All slices are decoded once.
+    All slices are decoded once; what the bodies' Segmentations need of them is kept (`KeptSlices`).
 
     Raises
     ------
@@ -68,7 +74,8 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
     >>> [body.size for body in found], found[0].segmentation.stack.names
     ([288.0, 72.0], ('b', 'c'))
     """
-    links, voids = _linked(segmentation)
+    linked = _linked(segmentation)
+    links = linked.links
     labels = links.labels()
     if not len(labels):
         raise InputError(
@@ -88,48 +95,96 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
         BodyObject(
             int(kind[k]) or None,
             float(volumes[k]),
-            _view(segmentation, links, owner == k, voids, _stray_notice(k, kind, volumes)),
+            _view(segmentation, linked, owner == k, _stray_notice(k, kind, volumes)),
         )
         for k in chosen
     )
 
 
-def _linked(segmentation: Segmentation) -> tuple[LinkedPieces, VoidFinder]:
-    """Return all pieces with their labels (0: none), and the voids, from one pass over the slices."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Look:
+    """What a slice shows, before it is known what belongs together."""
+
+    pieces: Pieces
+    sizes: IntArray
+    labels: IntArray
+    corner: Corner
+    """Of the pieces' bounding box."""
+    body: BoolArray
+    """Where any body is, on the bounding box with a frame."""
+    closed: Pieces | None
+    framed: Corner
+    """Of `body` and `closed`."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Linked:
+    links: LinkedPieces
+    """All pieces with their labels (0: none)."""
+    voids: VoidFinder
+    kept: KeptSlices
+
+
+def _linked(segmentation: Segmentation) -> _Linked:
+    """Return what one pass over the slices finds."""
     links, voids = LinkedPieces(), VoidFinder()
+    kept = KeptSlices(segmentation.stack.decode)
     voxel = _voxel_volumes(segmentation.stack)
-    for index, picture, section in decoded_ahead(segmentation):
-        pieces, sizes, own = _slice_pieces(segmentation, picture, section)
-        links.add(pieces, sizes * voxel[index], own)
+
+    def work(index: int) -> _Look:
+        picture = segmentation.stack.decode(index)
+        look = _look(segmentation, picture, segmentation.field_of(index, picture))
+        kept.keep(index, picture, _framed(look.pieces.shape, look.corner, KEPT, picture.shape))
+        return look
+
+    for index, look in enumerate(worked_ahead(len(segmentation), work)):
+        links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner)
         if not segmentation.labels:
-            voids.add(pieces > 0)
-    return links, voids
+            voids.add(look.body, look.closed, look.framed)
+    return _Linked(links, voids, kept)
 
 
-def _slice_pieces(
-    segmentation: Segmentation, picture: Picture, section: SectionField
-) -> tuple[Pieces, FloatArray, IntArray]:
-    """Return one slice's pieces on the whole slice, their pixels, and the label of each."""
-    if not segmentation.labels:
-        pieces, sizes = pieces_of(_body(section))
-        whole = np.zeros(segmentation.stack.shape, dtype=np.int32)
-        row, column = section.offset
-        whole[row : row + pieces.shape[0], column : column + pieces.shape[1]] = pieces
-        return whole, sizes.astype(np.float64), np.zeros(len(sizes), dtype=np.int64)
-    whole, counts, labels = np.zeros(picture.shape, dtype=np.int32), [np.zeros(0)], [np.zeros(0, np.int64)]
+def _look(segmentation: Segmentation, picture: Picture, section: SectionField) -> _Look:
+    """Return one slice's pieces, their pixels and labels, and the background that they close in."""
+    if segmentation.labels:
+        pieces, sizes, labels, corner = _labelled_pieces(picture)
+    else:
+        pieces, sizes, (row, column) = body_pieces(section.above())
+        corner = (section.offset[0] + row, section.offset[1] + column)
+        labels = np.zeros(len(sizes), dtype=np.int64)
+    rows, columns = _framed(pieces.shape, corner, FRAME, picture.shape)
+    body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
+    top, left = corner[0] - rows.start, corner[1] - columns.start
+    body[top : top + pieces.shape[0], left : left + pieces.shape[1]] = pieces > 0
+    closed = closed_background(body) if len(sizes) and not segmentation.labels else None
+    return _Look(pieces, sizes, labels, corner, body, closed, (rows.start, columns.start))
+
+
+def _framed(
+    shape: tuple[int, ...], corner: Corner, frame: int, whole: tuple[int, ...]
+) -> tuple[slice, slice]:
+    """Return the rows and columns of a box and a frame around it, within the picture."""
+    low = [max(0, corner[k] - frame) for k in (0, 1)]
+    high = [min(whole[k], corner[k] + shape[k] + frame) for k in (0, 1)]
+    return slice(low[0], high[0]), slice(low[1], high[1])
+
+
+def _labelled_pieces(picture: Picture) -> tuple[Pieces, IntArray, IntArray, Corner]:
+    """Return the pieces of all labels, numbered one after the other, their pixels, labels and corner."""
+    left, top, width, height = cv2.boundingRect((picture > 0).view(np.uint8))
+    part, corner = picture[top : top + height, left : left + width], (top, left)
+    whole, counts, labels = np.zeros(part.shape, np.int32), [_NO_INTS], [_NO_INTS]
     done = 0
-    for label in np.unique(picture[picture > 0]):
-        pieces, sizes = pieces_of(picture == label)
+    for label in np.unique(part[part > 0]):
+        pieces, sizes = pieces_of(part == label)
         np.copyto(whole, pieces + done, where=pieces > 0)
         done += len(sizes)
-        counts.append(sizes.astype(np.float64))
+        counts.append(sizes)
         labels.append(np.full(len(sizes), int(label)))
-    return whole, np.concatenate(counts), np.concatenate(labels)
+    return whole, np.concatenate(counts), np.concatenate(labels), corner
 
 
-def _body(section: SectionField) -> BoolArray:
-    level = section.level if section.local_levels is None else section.local_levels
-    return np.asarray(section.values > level)
+_NO_INTS: IntArray = np.zeros(0, dtype=np.int64)
 
 
 def _voxel_volumes(stack: SliceStack) -> FloatArray:
@@ -155,31 +210,34 @@ def _stray_notice(k: int, kind: IntArray, volumes: FloatArray) -> tuple[Notice, 
     return (Notice("stray-voxels", text),)
 
 
-def _view(
-    whole: Segmentation, links: LinkedPieces, own: BoolArray, voids: VoidFinder, notices: tuple[Notice, ...]
-) -> Segmentation:
+def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[Notice, ...]) -> Segmentation:
     """Return the body of the pieces `own` alone, on the slices where it is."""
-    present = _present(whole, links, own)
+    present = _present(whole, linked.links, own)
     first, last = present[0], present[-1]
-    inner = _void_volume(whole, links, own, voids)
-    told = void_notice(inner, float(links.sizes()[own].sum()), filled=whole.fill_voids)
+    inner = _void_volume(whole, linked, own)
+    told = void_notice(inner, float(linked.links.sizes()[own].sum()), filled=whole.fill_voids)
+    kept = replace(whole.stack, decode=linked.kept)
     return Segmentation(
-        cut_stack(whole.stack, first, last + 1),
-        BodyField(whole, links, own, voids, first),
+        cut_stack(kept, first, last + 1),
+        BodyField(whole, linked.links, own, linked.voids, first),
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
     )
 
 
-def _void_volume(whole: Segmentation, links: LinkedPieces, own: BoolArray, voids: VoidFinder) -> float:
+def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
     """Return the volume of the voids that a body encloses, mm³."""
     if whole.labels:
         return 0.0
+    links, voids = linked.links, linked.voids
     voxel, total = _voxel_volumes(whole.stack), 0.0
     for k in range(len(links)):
         if own[links.of_slice(k)].any() and voids.has_closed(k):
-            mine = np.concatenate([[False], own[links.of_slice(k)]])[links.pieces(k)]
-            total += float(voxel[k]) * float(np.count_nonzero(touching(voids.closed(k), mine)))
+            closed, (row, column) = voids.closed(k)
+            window = (slice(row, row + closed.shape[0]), slice(column, column + closed.shape[1]))
+            pieces, corner = links.pieces(k)
+            mine = np.concatenate([[False], own[links.of_slice(k)]])[pieces]
+            total += float(voxel[k]) * float(np.count_nonzero(touching(closed, placed(mine, corner, window))))
     return total
 
 

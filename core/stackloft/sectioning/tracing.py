@@ -126,8 +126,7 @@ def _bordered(section: SectionField) -> FloatArray:
     The border mirrors the outermost pixels' values to the other side of the level, so that a body cut by
     the picture's edge is closed on that edge.
     """
-    level = section.level if section.local_levels is None else section.local_levels
-    field: FloatArray = np.pad(section.values - level, REACH, mode="edge")
+    field: FloatArray = np.pad(section.relative(), REACH, mode="edge")
     for edge in (field[:REACH], field[-REACH:], field[:, :REACH], field[:, -REACH:]):
         np.copyto(edge, -np.abs(edge))
     return field
@@ -208,8 +207,7 @@ def _filled_notice(filled: list[_Line], largest: float, rules: TraceRules, name:
 
 
 def _border_notice(section: SectionField, shape: tuple[int, int], name: str) -> Iterator[Notice]:
-    level = section.level if section.local_levels is None else section.local_levels
-    inside = section.values > level
+    inside = section.above()
     (top, left), (rows, columns) = section.offset, inside.shape
     sides = {
         "top": top == 0 and inside[0].any(),

@@ -11,13 +11,15 @@ r"""Voids inside bodies: background that nowhere reaches the pictures' border, s
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.model.arrays import BoolArray
 from stackloft.model.notices import Notice
-from stackloft.sectioning.linked_pieces import LinkedPieces, pieces_of
+from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, pieces_of
 
 CONTINUED = 0.5
 """Least part of the smaller of two pieces of background that makes them one across slices."""
@@ -25,6 +27,7 @@ CONTINUED = 0.5
 
 CRACK = 2
 """Pixels: a passage no wider than twice this is none; it counts as void, with what lies behind it."""
+_ENDLESS = 1e18  # pixels of the outer background, which is larger than any void
 _FEWEST = 20  # pixels of a crack; fewer are the staircase of a slanting boundary
 
 
@@ -79,6 +82,61 @@ def void_notice(voids: float, solid: float, *, filled: bool) -> tuple[Notice, ..
     return (Notice("voids-kept", f"{share} are left out; --set segmenter.voids=fill counts them as body"),)
 
 
+def closed_background(body: BoolArray) -> Pieces | None:
+    """Return the numbered pieces of background that `outer_background` does not reach; None: there are none.
+
+    Most slices have none, which their outlines tell without looking at every pixel.
+    """
+    if _surely_open(body.view(np.uint8)):
+        return None
+    pieces, sizes = pieces_of(~(body | outer_background(body)), connectivity=8)
+    return pieces if len(sizes) else None
+
+
+def _surely_open(bits: NDArray[np.uint8]) -> bool:
+    """Return True when there is no hole, none behind a passage closed by the disc, and no long crack.
+
+    The disc's closing of the body is the complement of the background's opening.
+    """
+    if bits[[0, -1]].any() or bits[:, [0, -1]].any() or _has_holes(np.ascontiguousarray(bits)):
+        return False
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK + 1))
+    framed = np.pad(bits, 2 * CRACK)
+    wide = cv2.dilate(framed, disc)
+    if _has_holes(wide):
+        return False
+    cracks = cv2.erode(wide, disc) > framed
+    if np.count_nonzero(cracks) < _FEWEST:
+        return True
+    return bool(pieces_of(cracks, connectivity=8)[1].max() < _FEWEST)
+
+
+def _has_holes(bits: cv2.typing.MatLike) -> bool:
+    _, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
+    return tree is not None and bool((tree[0, :, 3] >= 0).any())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Slice:
+    """A slice's body on a window, and the background that is closed in."""
+
+    body: BoolArray
+    closed: Pieces | None
+    corner: Corner
+
+    def numbered(self, window: tuple[int, int, int, int]) -> Pieces:
+        """Return 1 for the outer background, 2 … for what is closed in, 0 for body, on a wider window."""
+        top, left, bottom, right = window
+        numbers = np.ones((bottom - top, right - left), dtype=np.int32)
+        rows, columns = self.body.shape
+        row, column = self.corner[0] - top, self.corner[1] - left
+        part = numbers[row : row + rows, column : column + columns]
+        part[self.body] = 0
+        if self.closed is not None:
+            np.copyto(part, self.closed + 1, where=self.closed > 0)
+        return numbers
+
+
 class VoidFinder:
     """Takes the body's pixels slice by slice; then knows which background is closed in.
 
@@ -89,8 +147,9 @@ class VoidFinder:
     >>> hollow[2, 2] = False
     >>> finder = VoidFinder()
     >>> for mask in (body, hollow, body):
-    ...     finder.add(np.pad(mask, 1))
-    >>> [int(finder.closed(k).sum()) for k in range(3)]
+    ...     framed = np.pad(mask, 1)
+    ...     finder.add(framed, closed_background(framed))
+    >>> [int(finder.closed(k)[0].sum()) for k in range(3)]
     [0, 1, 0]
     """
 
@@ -98,19 +157,28 @@ class VoidFinder:
         self._links = LinkedPieces(CONTINUED)
         self._outside: list[BoolArray] = []
         self._closed: BoolArray | None = None
+        self._last: _Slice | None = None
 
-    def add(self, body: BoolArray) -> None:
-        """Take a slice: True where any body is."""
-        outside = outer_background(body)
-        pieces, sizes = pieces_of(~(body | outside), connectivity=8)
-        numbered = np.where(pieces > 0, pieces + 1, outside).astype(np.int32)
-        self._links.add(numbered, np.concatenate([[float(outside.sum())], sizes]))
+    def add(self, body: BoolArray, closed: Pieces | None, corner: Corner = (0, 0)) -> None:
+        """Take a slice: True where any body is, on a window of it, and its `closed_background`."""
+        now, before = _Slice(body, closed, corner), self._last
+        sizes = np.bincount(closed.ravel())[1:] if closed is not None else np.zeros(0)
+        numbers, place, anew = np.zeros((0, 0), np.uint8), corner, None
+        if closed is not None or (before is not None and before.closed is not None):
+            window = _around(now, before or now)
+            numbers, place = now.numbered(window), window[:2]
+            anew = (before.numbered(window), place) if before is not None else None
+        self._links.add(numbers, np.concatenate([[_ENDLESS], sizes]), None, place, anew)
         self._outside.append(np.arange(1 + len(sizes)) == 0)
+        self._last = now
 
-    def closed(self, number: int) -> BoolArray:
-        """Return the pixels of slice `number` that lie in a void."""
-        pieces = self._links.pieces(number)
-        return np.asarray(np.concatenate([[False], self._pieces()[self._links.of_slice(number)]])[pieces])
+    def closed(self, number: int) -> tuple[BoolArray, Corner]:
+        """Return the pixels of a crop of slice `number` that lie in a void, and the crop's corner."""
+        own = self._pieces()[self._links.of_slice(number)]
+        if not own.any():
+            return np.zeros((0, 0), dtype=np.bool_), (0, 0)
+        pieces, corner = self._links.pieces(number)
+        return np.concatenate([[False], own])[pieces], corner
 
     def has_closed(self, number: int) -> bool:
         """Return whether slice `number` shows any void."""
@@ -125,3 +193,10 @@ class VoidFinder:
             open_objects[objects[outside]] = True
             self._closed = ~open_objects[objects]
         return self._closed
+
+
+def _around(a: _Slice, b: _Slice) -> tuple[int, int, int, int]:
+    """Return top, left, bottom, right of the window that holds both slices' windows."""
+    top, left = (min(a.corner[k], b.corner[k]) for k in (0, 1))
+    bottom, right = (max(one.corner[k] + one.body.shape[k] for one in (a, b)) for k in (0, 1))
+    return top, left, bottom, right

@@ -12,6 +12,7 @@ from stackloft.model.arrays import read_only
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.kept_slices import Peeked
 from stackloft_plugins.segmenters.grey import grey_levels
 from stackloft_plugins.segmenters.holder import without_holder
 from stackloft_plugins.segmenters.n4_bias import bias_corrected
@@ -77,8 +78,9 @@ def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
     >>> slab_segmentation(stack, SlabRules()).field_of(0, scan).threshold
     -480.0
     """
-    field, told, notices = _field(stack, rules)
-    stack = replace(stack, provenance={**stack.provenance, "grey level": told})
+    peeked = Peeked(stack.decode)
+    field, told, notices = _field(replace(stack, decode=peeked.peek), rules)
+    stack = replace(stack, decode=peeked, provenance={**stack.provenance, "grey level": told})
     return Segmentation(stack, _Masked(stack, field), notices=notices, fill_voids=rules.fill_voids)
 
 
@@ -118,7 +120,9 @@ class _Level:
 
     def __call__(self, picture: Picture, said: float | None) -> SectionField:
         level = self.level if said is None else said
-        grey = self.sign * grey_levels(picture, self.channel).astype(np.float64)
+        if self.sign > 0.0 and picture.ndim == 2:
+            return SectionField(read_only(picture), level, threshold=level)
+        grey = self.sign * grey_levels(picture, self.channel)
         return SectionField(read_only(grey), self.sign * level, threshold=level)
 
 
