@@ -60,7 +60,7 @@ def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread
     True
     """
     count = tangents.shape[1]
-    heading = tangents @ np.array([1.0, 1.0j])
+    heading = np.ascontiguousarray(tangents, dtype=np.float64).view(np.complex128)[..., 0]
     turn = np.abs(np.angle(np.roll(heading, -1, axis=1) / heading))
     away_from_corners = np.stack([_away(marks, count) for marks in corners])
     turn = turn * away_from_corners

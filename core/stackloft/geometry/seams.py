@@ -16,8 +16,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-_TO_COMPLEX = np.array([1.0, 1.0j])
-
 TIE = 0.02
 """Two phases whose scores (0 to 3) differ by less are a near tie."""
 ALIKE = 0.98
@@ -73,14 +71,19 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
 
 def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
     """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
-    score = _correlation(points @ _TO_COMPLEX).real + _correlation(_directions(tangents)).real
+    score = _correlation(_as_complex(points)).real + _correlation(_directions(tangents)).real
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
     return score
 
 
+def _as_complex(plane: FloatArray) -> ComplexArray:
+    """Return x + iy; no copy where the pairs lie together."""
+    return np.ascontiguousarray(plane, dtype=np.float64).view(np.complex128)[..., 0]
+
+
 def _directions(tangents: FloatArray) -> ComplexArray:
-    direction: ComplexArray = tangents @ _TO_COMPLEX
+    direction: ComplexArray = _as_complex(tangents)
     return direction / np.abs(direction)
 
 

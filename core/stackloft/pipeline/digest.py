@@ -5,15 +5,17 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stackloft.model.errors import InputError
-from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture
+from stackloft.model.segmentation import Segmentation
+from stackloft.model.slice_stack import Picture, SliceStack
 
 _BLOCK = 1 << 20
 RUN_MARK = "measurement.json"
@@ -99,25 +101,48 @@ def _parts(value: Any) -> Iterator[bytes]:
 
 
 class PictureDigest:
-    """A `Sink` that takes the fingerprint of slices that came from memory, in the one decoding pass."""
+    """Takes the fingerprint of slices that come from memory while they are decoded for other reasons.
+
+    Examples
+    --------
+    >>> from stackloft.model.slice_stack import SectionKind
+    >>> stack = SliceStack(lambda k: np.full((4, 4), k), ("a", "b"), (4, 4), np.arange(2.0), np.ones((2, 2)),
+    ...                    SectionKind.SLAB)
+    >>> digest = PictureDigest()
+    >>> tapped = digest.tapped(stack)
+    >>> _ = tapped.decode(1), tapped.decode(0)
+    >>> len(digest.value(stack))
+    64
+    """
 
     def __init__(self) -> None:
-        self._hash = hashlib.sha256()
+        self._slices: dict[int, bytes] = {}
 
-    def begin(self, segmentation: Segmentation) -> None:
-        """Take in the stack's geometry."""
-        stack = segmentation.stack
+    def tapped(self, product: Any) -> Any:
+        """Return a SliceStack or Segmentation that tells this one of every slice decoded; else `product`."""
+        if isinstance(product, Segmentation):
+            return replace(product, stack=self.tapped(product.stack))
+        if isinstance(product, SliceStack):
+            return replace(product, decode=partial(self._decode, product.decode))
+        return product
+
+    def value(self, product: Any) -> str:
+        """Return the fingerprint of the stack's geometry and the slices seen."""
+        stack: SliceStack = product.stack if isinstance(product, Segmentation) else product
+        whole = hashlib.sha256()
         for array in (stack.positions, stack.pixel_spacing, stack.affine):
-            self._hash.update(array.tobytes())
+            whole.update(array.tobytes())
         for moved in (stack.origins, stack.turns):
             if moved is not None:
-                self._hash.update(moved.tobytes())
+                whole.update(moved.tobytes())
+        for index in sorted(self._slices):
+            whole.update(self._slices[index])
+        return whole.hexdigest()
 
-    def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
-        """Take in one picture."""
-        self._hash.update(f"{index}{picture.dtype.str}{picture.shape}".encode())
-        self._hash.update(picture.tobytes())
-
-    def end(self) -> str:
-        """Return the fingerprint."""
-        return self._hash.hexdigest()
+    def _decode(self, decode: Callable[[int], Picture], number: int) -> Picture:
+        picture = decode(number)
+        if number not in self._slices:
+            taken = hashlib.sha256(f"{number}{picture.dtype.str}{picture.shape}".encode())
+            taken.update(np.ascontiguousarray(picture).data)
+            self._slices[number] = taken.digest()
+        return picture

@@ -72,23 +72,26 @@ def measure(
     listener = progress or Silence()
     plan = make_plan(request, product)
     reading = _read(plan, request, product, listener)
-    own = (PictureDigest(),) if isinstance(product, (SliceStack, Segmentation)) else ()
-    bench = Workbench(plan, reading.product, listener, (*own, *sinks))
+    seen = PictureDigest()
+    bench = Workbench(
+        plan, seen.tapped(reading.product) if plan.reader is None else reading.product, listener, sinks
+    )
     rows, measured = _run_methods(plan.methods, bench, every=request.method == ALL_METHODS)
     sections, skipped = _sections(bench)
     body = _measurement(rows, measured, sections, reading.product)
     products = _in_order(measured, bench)
     again = replace(plan, methods=tuple(sorted(plan.methods, key=lambda x: x.name != body.volume.method)))
-    taken, given = bench.sink_products[: len(own)], bench.sink_products[len(own) :]
+    pictured = plan.reader is None and isinstance(product, (SliceStack, Segmentation))
+    digest = seen.value(product) if pictured else reading.digest
     seconds = {**reading.seconds, **bench.stages, "total": time.perf_counter() - start}
     result = Result(
-        source={"path": str(request.source), "reader": reading.name, "digest": (*taken, reading.digest)[0]},
+        source={"path": str(request.source), "reader": reading.name, "digest": digest},
         objects=(body,),
         warnings=_warnings(plan, products, (*skipped, *measured.notices, *disagreements(measured.found))),
         recipe=recipe_of(again, segmented=any(isinstance(item, Segmentation) for item in products)),
         provenance=provenance_of(plan, seconds),
     )
-    return Outcome(result, products, given)
+    return Outcome(result, products, bench.sink_products)
 
 
 @dataclass(frozen=True, slots=True)

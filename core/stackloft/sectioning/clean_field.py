@@ -6,12 +6,30 @@ is brought to the background's side of the level here, what it fills to the body
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.segmentation import SectionField
+from stackloft.sectioning.linked_pieces import pinched
 from stackloft.sectioning.tracing import TraceRules
+
+
+def cleaned(section: SectionField, *, labels: bool, rules: TraceRules | None = None) -> SectionField:
+    """Return the section with what `clean_field` changes; itself where there is nothing to change."""
+    if labels or _is_clean(section):
+        return section
+    level = section.level if section.local_levels is None else section.local_levels
+    return replace(section, values=clean_field(section, labels=False, rules=rules) + level)
+
+
+def _is_clean(section: SectionField) -> bool:
+    """Return whether the body is one piece without a hole, which most are."""
+    bits = np.ascontiguousarray(section.above()).view(np.uint8)
+    outlines, _ = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    return len(outlines) == 1 and not pinched(bits, outlines[0][:, 0])
 
 
 def clean_field(section: SectionField, *, labels: bool, rules: TraceRules | None = None) -> FloatArray:
@@ -40,7 +58,7 @@ def clean_field(section: SectionField, *, labels: bool, rules: TraceRules | None
     (100, 4.0, -5.0)
     """
     field = section.relative()
-    if labels or not (field > 0).any():
+    if labels or _is_clean(section) or not (field > 0).any():
         return field
     rules = rules or TraceRules()
     crumbs, largest = _crumbs(field, rules)

@@ -209,10 +209,10 @@ def single_piece(bits: NDArray[np.uint8]) -> bool:
     outlines, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     if tree is None or np.count_nonzero(tree[0, :, 3] < 0) != 1:
         return False
-    return not any(_pinched(bits, outline[:, 0]) for outline in outlines)
+    return not any(pinched(bits, outline[:, 0]) for outline in outlines)
 
 
-def _pinched(bits: NDArray[np.uint8], chain: NDArray[Any]) -> bool:
+def pinched(bits: NDArray[np.uint8], chain: NDArray[Any]) -> bool:
     """Return whether a chain of border pixels steps between two that touch by their corners alone."""
     following = np.roll(chain, -1, axis=0)
     slanting = (chain != following).all(axis=1)

@@ -244,10 +244,8 @@ def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
 def _present(whole: Segmentation, links: LinkedPieces, own: BoolArray) -> list[int]:
     """Return the slices from the first to the last on which the body has pixels enough for a contour."""
     voxel = _voxel_volumes(whole.stack)
-    pixels = (
-        np.array([(own[at] * links.sizes()[at]).sum() for at in map(links.of_slice, range(len(links)))])
-        / voxel
-    )
+    sizes = own * links.sizes()
+    pixels = np.array([sizes[at].sum() for at in map(links.of_slice, range(len(links)))]) / voxel
     enough = np.flatnonzero(pixels >= FEWEST)
     if len(enough) < 2:  # so small that no contour is to be had; methods that count voxels need none
         enough = np.flatnonzero(pixels)

@@ -17,6 +17,8 @@ result is exact, whereas linear interpolation of the pixels themselves errs by u
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,8 +37,8 @@ _NEWTON_STEPS = 4
 _FEWEST = 16  # crossings below which a line is too small to be refined
 
 
-def crossing_points(line: Crossings, field: FloatArray) -> FloatArray:
-    """Return the points of a closed line at which `field` is zero.
+def crossing_points(line: Crossings, field: NDArray[Any], level: float = 0.0) -> FloatArray:
+    """Return the points of a closed line at which `field` equals `level`.
 
     Only crossings of edges that run across the boundary rather than along it are kept, about one for
     each pixel of its length, because the others are ill-conditioned.
@@ -46,7 +48,9 @@ def crossing_points(line: Crossings, field: FloatArray) -> FloatArray:
     line : Crossings
         From `closed_lines`.
     field : ndarray, (rows, columns)
-        Zero on the boundary; the line keeps `REACH` pixels from its border.
+        Of any real dtype; the line keeps `REACH` pixels from its border.
+    level : float
+        What the field is on the boundary.
 
     Returns
     -------
@@ -67,7 +71,7 @@ def crossing_points(line: Crossings, field: FloatArray) -> FloatArray:
     across = np.where(line.down, 1, field.shape[1])
     base = line.row * field.shape[1] + line.column
     flat = field.ravel()
-    samples = [flat[base + step * along] for step in (-1, 0, 1, 2)]
+    samples = [flat[base + step * along] - level for step in (-1, 0, 1, 2)]
     fraction = samples[1] / (samples[1] - samples[2])
     if len(base) >= _FEWEST:
         keep = _runs_across(flat, base, along, across)
@@ -120,7 +124,7 @@ def _ramp(value: FloatArray, low: float, high: float) -> FloatArray:
 
 
 def _runs_across(
-    flat: FloatArray, base: NDArray[np.int64], along: NDArray[np.int64], across: NDArray[np.int64]
+    flat: NDArray[Any], base: NDArray[np.int64], along: NDArray[np.int64], across: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Return whether the field changes faster along the crossed edge than across it.
 
@@ -129,7 +133,7 @@ def _runs_across(
     steep = np.zeros(len(base))
     flank = np.zeros(len(base))
     for step, lever in zip((-1, 0, 1, 2), (-1.5, -0.5, 0.5, 1.5), strict=True):
-        rows = [flat[base + step * along + side * across] for side in (-1, 0, 1)]
+        rows = [flat[base + step * along + side * across].astype(np.float64) for side in (-1, 0, 1)]
         steep += lever * (rows[0] + rows[1] + rows[2]) / 15.0
         flank += (rows[2] - rows[0]) / 8.0
     return np.asarray(np.abs(steep) >= _DOMINANCE * np.abs(flank))

@@ -132,7 +132,7 @@ def _turning(samples: FloatArray, reach: IntArray, turn: float) -> IntArray:
 
     A line's direction is one filter along the loop; a side behind one sample is the side ahead of another.
     """
-    way = samples @ np.array([1.0, 1.0j])
+    way = np.ascontiguousarray(samples).view(np.complex128)[:, 0]
     slope = np.linalg.pinv(np.vander(STEP * reach.astype(np.float64), 2, increasing=True))[1]
     around = np.concatenate([way, way[: reach[-1]]])
     ahead = np.convolve(around[reach[0] :], slope[::-1], mode="valid")

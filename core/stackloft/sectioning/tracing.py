@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.contour_stack import Loop
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField
+from stackloft.sectioning.border_chains import chain_lines
 from stackloft.sectioning.marching_squares import Crossings, closed_lines
 from stackloft.sectioning.nesting import inside_polygon
 from stackloft.sectioning.sub_pixel import REACH, crossing_points
@@ -93,12 +96,10 @@ def trace_field(
     99.9
     """
     rules = rules or TraceRules()
-    field = _bordered(section)
-    lines = [_Line(crossings) for crossings in closed_lines(field > 0, field)]
-    kept, dropped = _objects(lines, rules, name)
-    real, filled = _holes(kept, lines, field, rules)
-    shift = np.array(section.offset, dtype=np.float64) - REACH
-    loops = tuple(_loop(line, field, shift, spacing) for line in (*kept, *real))
+    grid = _quick_grid(section) or _bordered_grid(section)
+    kept, dropped = _objects(grid.lines, rules, name)
+    real, filled = _holes(kept, grid, rules)
+    loops = tuple(_loop(line, grid, spacing) for line in (*kept, *real))
     notices = (
         *_dropped_notice(dropped, kept[0].area, name),
         *_filled_notice(filled, kept[0].area, rules, name),
@@ -118,6 +119,34 @@ class _Line:
         y = crossings.row + np.where(crossings.down, 0.5, 0.0)
         self.rough: FloatArray = np.column_stack([x, y])
         self.area = Loop(self.rough).signed_area
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Grid:
+    """A slice's field and the lines in it."""
+
+    field: NDArray[Any]
+    """(rows, columns), of any real dtype"""
+    level: float
+    first: tuple[int, int]
+    """(row, column) of the field's first pixel in the slice."""
+    lines: list[_Line]
+
+
+def _quick_grid(section: SectionField) -> _Grid | None:
+    """Return the section's own field with its outlines; None where it needs a closer look."""
+    if section.local_levels is not None:
+        return None
+    lines = chain_lines(section.above().view(np.uint8), REACH)
+    if lines is None:
+        return None
+    return _Grid(section.values, section.level, section.offset, [_Line(crossings) for crossings in lines])
+
+
+def _bordered_grid(section: SectionField) -> _Grid:
+    field = _bordered(section)
+    lines = [_Line(crossings) for crossings in closed_lines(field > 0, field)]
+    return _Grid(field, 0.0, (section.offset[0] - REACH, section.offset[1] - REACH), lines)
 
 
 def _bordered(section: SectionField) -> FloatArray:
@@ -147,13 +176,12 @@ def _objects(lines: list[_Line], rules: TraceRules, name: str) -> tuple[list[_Li
     return kept, [line for line in outlines if rules.debris * largest <= line.area < rules.branch * largest]
 
 
-def _holes(
-    kept: list[_Line], lines: list[_Line], field: FloatArray, rules: TraceRules
-) -> tuple[list[_Line], list[_Line]]:
+def _holes(kept: list[_Line], grid: _Grid, rules: TraceRules) -> tuple[list[_Line], list[_Line]]:
     """Return the holes of the kept outlines through which the background shows: real ones, filled ones."""
-    holes = [line for line in lines if line.area < 0]
+    holes = [line for line in grid.lines if line.area < 0]
     if not holes:
         return [], []
+    field = grid.field
     starts = np.array([hole.rough[0] for hole in holes])
     within = np.any([inside_polygon(starts, outline.rough) for outline in kept], axis=0)
     own = [hole for hole, ours in zip(holes, within, strict=True) if ours]
@@ -179,9 +207,9 @@ def _median_within(hole: _Line, field: FloatArray) -> float:
     return float(np.median(window[(covered > 0) & (window <= 0)]))
 
 
-def _loop(line: _Line, field: FloatArray, shift: FloatArray, spacing: tuple[float, float]) -> Loop:
-    """Return the line as a loop in mm; `shift` is (row, column) of the field's first pixel in the slice."""
-    pixels = crossing_points(line.crossings, field) + shift[::-1]
+def _loop(line: _Line, grid: _Grid, spacing: tuple[float, float]) -> Loop:
+    """Return the line as a loop in mm."""
+    pixels = crossing_points(line.crossings, grid.field, grid.level) + np.array(grid.first[::-1])
     points = pixels * np.array(spacing)[::-1]
     apart = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1) > 1e-9 * max(spacing)
     return Loop(frozen_floats(points[apart]), hole=line.area < 0)

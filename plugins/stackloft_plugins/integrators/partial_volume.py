@@ -24,7 +24,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
-from stackloft.sectioning.clean_field import clean_field
+from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum
 from stackloft.sectioning.streaming import streamed
 
@@ -86,26 +86,40 @@ class _SliceSums:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
-    """A slice's field and where it lies."""
+    """A slice's field, where it lies, and where it is body."""
 
-    field: FloatArray
-    offset: tuple[int, int]
+    section: SectionField
+    body: Mask
+
+    @staticmethod
+    def of(section: SectionField) -> _Seen:
+        return _Seen(section, section.above().view(np.uint8))
 
     def mask(self, window: tuple[int, int, int, int]) -> Mask:
         """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""
+        if window == self.window:
+            return self.body
         top, left, bottom, right = window
         mask = np.zeros((bottom - top, right - left), np.uint8)
-        row, column = self.offset[0] - top, self.offset[1] - left
-        rows, columns = self.field.shape
-        part = self.field[max(-row, 0) : bottom - top - row, max(-column, 0) : right - left - column]
-        mask[max(row, 0) : row + rows, max(column, 0) : column + columns] = part > 0
+        row, column = self.section.offset[0] - top, self.section.offset[1] - left
+        part = self.body[
+            max(-row, 0) : max(bottom - top - row, 0), max(-column, 0) : max(right - left - column, 0)
+        ]
+        row, column = max(row, 0), max(column, 0)
+        mask[row : row + part.shape[0], column : column + part.shape[1]] = part
         return mask
 
     @property
     def window(self) -> tuple[int, int, int, int]:
         """Top, left, bottom, right."""
-        row, column = self.offset
-        return row, column, row + self.field.shape[0], column + self.field.shape[1]
+        row, column = self.section.offset
+        return row, column, row + self.body.shape[0], column + self.body.shape[1]
+
+    def relative(self, where: NDArray[np.bool_]) -> FloatArray:
+        """Return the field above its level at the pixels chosen."""
+        local = self.section.local_levels
+        level = self.section.level if local is None else local[where]
+        return np.asarray(self.section.values[where] - level, dtype=np.float64)
 
 
 class _CoverageSink:
@@ -126,7 +140,7 @@ class _CoverageSink:
         self._sums: list[_SliceSums] = []
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
-        self._take(_Seen(clean_field(section_field, labels=False), section_field.offset))
+        self._take(_Seen.of(cleaned(section_field, labels=False)))
 
     def end(self) -> Integral:
         self._take(None)
@@ -161,21 +175,20 @@ class _CoverageSink:
 
 def _sums(current: _Seen, beside: tuple[_Seen | None, _Seen | None], zone: int) -> _SliceSums:
     """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
-    field = current.field
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
     inside = cv2.erode(common, _disc(zone), borderType=cv2.BORDER_CONSTANT, borderValue=1)
-    deep = cv2.erode(common, _disc(zone + _RING), borderType=cv2.BORDER_CONSTANT, borderValue=1)
+    deep = cv2.erode(inside, _disc(_RING), borderType=cv2.BORDER_CONSTANT, borderValue=1)
     near = cv2.dilate(united, _disc(zone))
-    wide = cv2.dilate(united, _disc(zone + _RING))
+    wide = cv2.dilate(near, _disc(_RING))
     edge = near > inside
     return _SliceSums(
         inside=int(np.count_nonzero(inside)),
         edge=int(np.count_nonzero(edge)),
-        grey=float(field[edge].sum()),
-        body=_level(field[inside > deep]),
-        background=_level(field[wide > near]),
+        grey=float(current.relative(edge).sum()),
+        body=_level(current.relative(inside > deep)),
+        background=_level(current.relative(wide > near)),
     )
 
 
