@@ -65,6 +65,9 @@ class Segmentation:
     own. Empty for grey levels."""
     fill_voids: bool = False
     """Whether background that is closed in on every side counts as body."""
+    neck: float | None = None
+    """Bodies that touch are cut apart where the neck between them is narrower than this part of the thinner
+    one's width; None: what hangs together is one body."""
 
     def __len__(self) -> int:
         return len(self.stack)

@@ -26,6 +26,7 @@ from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed, touching
+from stackloft.sectioning.cut_bodies import cut_apart
 from stackloft.sectioning.kept_slices import KeptSlices
 from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, body_pieces, pieces_of
 from stackloft.sectioning.voids import CRACK, VoidFinder, closed_background, void_notice
@@ -75,8 +76,11 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
     ([288.0, 72.0], ('b', 'c'))
     """
     linked = _linked(segmentation)
+    if segmentation.neck is not None and len(linked.links.labels()):
+        cut = cut_apart(linked.links, linked.voids, segmentation.stack, segmentation.neck)
+        linked = replace(linked, links=cut)
     links = linked.links
-    labels = links.labels()
+    labels = links.labels() if segmentation.neck is None else np.zeros_like(links.labels())
     if not len(labels):
         raise InputError(
             "no body found on any slice",
@@ -91,11 +95,12 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
         chosen = [_largest_of(volumes, kind == label) for label in segmentation.labels]
     else:
         chosen = [int(k) for k in np.argsort(-volumes, kind="stable") if volumes[k] >= CRUMB * volumes.max()]
+    told = _cut_notice(segmentation.neck, len(chosen))
     return tuple(
         BodyObject(
             int(kind[k]) or None,
             float(volumes[k]),
-            _view(segmentation, linked, owner == k, _stray_notice(k, kind, volumes)),
+            _view(segmentation, linked, owner == k, (*_stray_notice(k, kind, volumes), *told)),
         )
         for k in chosen
     )
@@ -208,6 +213,16 @@ def _stray_notice(k: int, kind: IntArray, volumes: FloatArray) -> tuple[Notice, 
     share = 100 * stray / float(volumes[k])
     text = f"label {kind[k]}: left out {stray:.4g} mm³ of stray voxels ({share:.2g} %) away from its body"
     return (Notice("stray-voxels", text),)
+
+
+def _cut_notice(neck: float | None, count: int) -> tuple[Notice, ...]:
+    if neck is None or count < 2:
+        return ()
+    text = (
+        f"bodies that touch were cut apart where the neck is below {neck:g} of the thinner one's width:"
+        f" {count} bodies; a waist counts as a neck, so look at the overview"
+    )
+    return (Notice("bodies-cut", text),)
 
 
 def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[Notice, ...]) -> Segmentation:
