@@ -78,7 +78,7 @@ def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray])
 
 
 def _as_complex(plane: FloatArray) -> ComplexArray:
-    """Return x + iy; no copy where the pairs lie together."""
+    """Return the plane's vectors as complex numbers; no copy where the pairs lie together."""
     return np.ascontiguousarray(plane, dtype=np.float64).view(np.complex128)[..., 0]
 
 

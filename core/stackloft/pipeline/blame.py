@@ -58,7 +58,9 @@ def _answerable(loaded: Loaded, product: Any) -> Any:
         return replace(product, decode=partial(_decoded, loaded, product.decode, product.shape))
     if isinstance(product, Segmentation) and not _answered(product.field_of):
         field_of = partial(_field_found, loaded, product.field_of)
-        return replace(product, stack=_answerable(loaded, product.stack), field_of=field_of)
+        read = loaded.listing.family == "reader"  # a segmenter does not answer for a stack from memory
+        stack = _answerable(loaded, product.stack) if read else product.stack
+        return replace(product, stack=stack, field_of=field_of)
     return product
 
 

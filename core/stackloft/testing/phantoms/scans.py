@@ -84,8 +84,8 @@ class Scans:
     """Air around the body, mm."""
     label: int = 0
     """Above 0: a label map with this number where at least half of a voxel is body; NRRD and NIfTI."""
-    slab_points: int = 6
-    """Gauss–Legendre points across a slab."""
+    slab_points: int = 7
+    """Gauss–Legendre points across a slab; odd, or the half-way level falls on a step between two of them."""
     syntax: str = "explicit"
     """DICOM transfer syntax (`scan_dicom.SYNTAXES`)."""
     multiframe: bool = False
