@@ -12,7 +12,7 @@ from stackloft.testing.phantoms.photographs import Photographs
 from stackloft.testing.phantoms.realism import Realism
 from stackloft.testing.phantoms.writing import write_phantom
 
-STRAIGHT = ("cylinder", "frustum", "box", "prism", "ellipsoid", "apple", "potato", "meat", "cone")
+STRAIGHT = ("cylinder", "frustum", "box", "prism", "ellipsoid", "apple", "potato", "meat")
 CURVED = {"banana": {}, "strongly curved banana": {"bend": 90.0}, "slightly curved banana": {"bend": 25.0}}
 
 

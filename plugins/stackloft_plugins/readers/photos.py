@@ -183,6 +183,8 @@ class PhotosReader:
         over = tuple(turned_over(number, shown) for number in kept)
         decode = decoder(headers, found, paper, over)
         marks = self._marks(said, decode, tuple(header.path.name for header in headers), scale.spacing)
+        thickness = own_thickness(self._spacing, said, shown, places, folder, kept)
+        beyond = z[0] - folder_first if thickness is None else thickness[0]
         return SliceStack(
             decode=decode if marks is None else hiding(decode, marks.found),
             names=tuple(header.path.name for header in headers),
@@ -190,15 +192,13 @@ class PhotosReader:
             positions=z,
             pixel_spacing=scale.spacing,
             kind=shown.section,
-            thickness=own_thickness(self._spacing, said, shown, places, folder, kept),
+            thickness=thickness,
             origins=placed_when_turned(
                 scale.spacing, scale.origins, headers[0].size, scale_told.principal, over
             ),
             marks=None if marks is None else marks.places,
             scale_uncertainty=scale.uncertainty,
-            hints=replace(
-                hints_of(said, folder, kept, over), ends=ends_with_cap(said.ends, shown, z[0] - folder_first)
-            ),
+            hints=replace(hints_of(said, folder, kept, over), ends=ends_with_cap(said.ends, shown, beyond)),
             notices=(
                 *notices,
                 *self._height_checked(said, numbers, len(every), folder, shown),
