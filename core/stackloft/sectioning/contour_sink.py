@@ -13,6 +13,7 @@ from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
+from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
@@ -40,12 +41,13 @@ class ContourSink:
         self._rules = rules or TraceRules()
         self._segmentation: Segmentation | None = None
         self._sections: list[Section] = []
+        self._perhaps: list[list[tuple[Loop, Notice]]] = []
         self._notices: list[Notice] = []
 
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready for the slices of `segmentation`."""
         self._segmentation = segmentation
-        self._sections, self._notices = [], []
+        self._sections, self._perhaps, self._notices = [], [], []
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
         """Trace slice `index`.
@@ -61,12 +63,15 @@ class ContourSink:
         traced = trace_field(section_field, (row, column), stack.shape, name, self._rules)
         loops = tuple(with_corners(_placed(loop, stack, index), max(row, column)) for loop in traced.loops)
         self._sections.append(Section(float(stack.positions[index]), loops, name))
+        self._perhaps.append([(_placed(loop, stack, index), notice) for loop, notice in traced.perhaps])
         self._notices += [*section_field.notices, *traced.notices]
 
     def end(self) -> ContourStack:
         """Return the sections, with what the stack said and what was noticed on the way."""
         segmentation = self._begun
         stack = segmentation.stack
+        self._sections, left_out = with_limbs(self._sections, self._perhaps)
+        self._notices += left_out
         return ContourStack(
             sections=tuple(self._sections),
             kind=stack.kind,

@@ -52,6 +52,8 @@ class TracedLoops:
     loops: tuple[Loop, ...]
     """Outlines with positive, holes with negative signed area; the largest outline first."""
     notices: tuple[Notice, ...] = ()
+    perhaps: tuple[tuple[Loop, Notice], ...] = ()
+    """Outlines too small to be the body's by themselves, each with what is to be said when it is left out."""
 
 
 def trace_field(
@@ -100,12 +102,14 @@ def trace_field(
     kept, dropped = _objects(grid.lines, rules, name)
     real, filled = _holes(kept, grid, rules)
     loops = tuple(_loop(line, grid, spacing) for line in (*kept, *real))
+    perhaps = tuple(
+        (_loop(line, grid, spacing), _dropped_notice(line, kept[0].area, name)) for line in dropped
+    )
     notices = (
-        *_dropped_notice(dropped, kept[0].area, name),
         *_filled_notice(filled, kept[0].area, rules, name),
         *_border_notice(section, shape, name),
     )
-    return TracedLoops(loops, notices)
+    return TracedLoops(loops, notices, perhaps)
 
 
 class _Line:
@@ -215,14 +219,12 @@ def _loop(line: _Line, grid: _Grid, spacing: tuple[float, float]) -> Loop:
     return Loop(frozen_floats(points[apart]), hole=line.area < 0)
 
 
-def _dropped_notice(dropped: list[_Line], largest: float, name: str) -> Iterator[Notice]:
-    if dropped:
-        share = 100 * dropped[0].area / largest
-        yield Notice(
-            "second-object",
-            f"{name}: left out a second object of {share:.1f} % of the body's area; "
-            "move it out of the picture, or give a mask in stack.toml if it belongs to the body",
-        )
+def _dropped_notice(dropped: _Line, largest: float, name: str) -> Notice:
+    return Notice(
+        "second-object",
+        f"{name}: left out a second object of {100 * dropped.area / largest:.1f} % of the body's area; "
+        "move it out of the picture, or give a mask in stack.toml if it belongs to the body",
+    )
 
 
 def _filled_notice(filled: list[_Line], largest: float, rules: TraceRules, name: str) -> Iterator[Notice]:
