@@ -11,13 +11,12 @@ Loops keep the body on their left: outlines counter-clockwise, holes clockwise.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
+from stackloft.geometry.bridge_edges import BridgeCut, CutLine, assembled, signed_area, source
 from stackloft.geometry.polygon_distance import signed_distance
 
 FloatArray = NDArray[np.float64]
@@ -32,39 +31,6 @@ ASTRAY = 4.0
 """What a chord costs, in lengths, where it runs through the neighbour's body or leaves its own."""
 MISLAID = 0.5
 """What a length of outline costs that ends up with a farther part of the neighbour."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Part:
-    """One loop after cutting."""
-
-    points: FloatArray
-    """(k, 2) mm"""
-    pinned: IntArray
-    """(c,) vertices at which edges meet"""
-    edges: tuple[tuple[int, bool], ...]
-    """(edge, forward) from pinned vertex to pinned vertex, beginning at the first"""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BridgeCut:
-    """Loops before and after cutting, made of the same edges."""
-
-    edges: tuple[FloatArray, ...]
-    """(k, 2) mm: polylines, ends included"""
-    wholes: tuple[Part, ...]
-    parts: tuple[Part, ...]
-
-
-@dataclass(slots=True)
-class _Line:
-    """A loop while it is cut: where each vertex comes from, and which chord leaves it."""
-
-    points: FloatArray
-    source: IntArray
-    """(k, 2): loop and vertex that each vertex was"""
-    chord: IntArray
-    """(k,) 0: an edge of its own loop leaves the vertex; ±(c + 1): chord c, forward or backward"""
 
 
 def cut_bridges(
@@ -87,7 +53,7 @@ def cut_bridges(
         None when no chord does it.
     """
     lines = [
-        _Line(p, np.column_stack([np.full(len(p), w), np.arange(len(p))]), np.zeros(len(p), dtype=np.int64))
+        CutLine(p, np.column_stack([np.full(len(p), w), np.arange(len(p))]), np.zeros(len(p), dtype=np.int64))
         for w, p in enumerate(joined)
     ]
     cost = _ChordCost(joined, parted)
@@ -97,19 +63,15 @@ def cut_bridges(
         if found is None:
             return None
         a, i, b, j = found
-        chords.append((_source(lines[a], i), _source(lines[b], j)))
+        chords.append((source(lines[a], i), source(lines[b], j)))
         made = (
             _split(lines[a], i, j, len(chords)) if a == b else [_merge(lines[a], i, lines[b], j, len(chords))]
         )
         lines = [line for k, line in enumerate(lines) if k not in {a, b}] + made
-    return _assembled(joined, lines, chords)
+    return assembled(joined, lines, chords)
 
 
-def _source(line: _Line, vertex: int) -> tuple[int, int]:
-    return int(line.source[vertex, 0]), int(line.source[vertex, 1])
-
-
-def _split(line: _Line, i: int, j: int, chord: int) -> list[_Line]:
+def _split(line: CutLine, i: int, j: int, chord: int) -> list[CutLine]:
     """Return the two loops on both sides of a chord from vertex i to vertex j."""
     n = len(line.points)
     made = []
@@ -117,18 +79,18 @@ def _split(line: _Line, i: int, j: int, chord: int) -> list[_Line]:
         run = np.arange(a, (b if b > a else b + n) + 1) % n
         leaving = line.chord[run].copy()
         leaving[-1] = sign * chord
-        made.append(_Line(line.points[run], line.source[run], leaving))
+        made.append(CutLine(line.points[run], line.source[run], leaving))
     return made
 
 
-def _merge(one: _Line, i: int, two: _Line, j: int, chord: int) -> _Line:
+def _merge(one: CutLine, i: int, two: CutLine, j: int, chord: int) -> CutLine:
     """Return the one loop that runs round both, and along the chord to and fro."""
     first = (np.arange(len(one.points) + 1) + i) % len(one.points)
     second = (np.arange(len(two.points) + 1) + j) % len(two.points)
     leaving = np.concatenate([one.chord[first], two.chord[second]])
     leaving[len(first) - 1] = chord
     leaving[-1] = -chord
-    return _Line(
+    return CutLine(
         np.concatenate([one.points[first], two.points[second]]),
         np.concatenate([one.source[first], two.source[second]]),
         leaving,
@@ -149,7 +111,7 @@ class _ChordCost:
         self._origin = np.array([x[0], y[0]])
         self._own = signed_distance(x, y, _dense(joined, self._step))
         self._other = signed_distance(x, y, _dense(parted, self._step))
-        outlines = [p for p in parted if _area(p) > 0.0]
+        outlines = [p for p in parted if signed_area(p) > 0.0]
         self._count = len(outlines)
         if outlines:
             self._labels = np.concatenate([np.full(len(p), k) for k, p in enumerate(outlines)])
@@ -165,7 +127,7 @@ class _ChordCost:
         length = np.linalg.norm(end - start, axis=1)
         return np.asarray(length * (1.0 + ASTRAY * (through.mean(axis=1) + beyond.mean(axis=1))))
 
-    def best_split(self, lines: list[_Line]) -> tuple[int, int, int, int] | None:
+    def best_split(self, lines: list[CutLine]) -> tuple[int, int, int, int] | None:
         """Return (loop, vertex, loop, vertex) of the best chord that cuts a loop in two."""
         best, choice = np.inf, None
         for k, line in enumerate(lines):
@@ -174,7 +136,7 @@ class _ChordCost:
                 best, choice = found[0], (k, found[1], k, found[2])
         return choice
 
-    def _split_of(self, line: _Line) -> tuple[float, int, int] | None:
+    def _split_of(self, line: CutLine) -> tuple[float, int, int] | None:
         chosen = _spread(line)
         if len(chosen) < FEWEST or self._count < FEWEST:
             return None
@@ -196,12 +158,12 @@ class _ChordCost:
         best = int(np.argmin(cost))
         return (float(cost[best]), int(i[best]), int(j[best])) if np.isfinite(cost[best]) else None
 
-    def best_merge(self, lines: list[_Line]) -> tuple[int, int, int, int] | None:
+    def best_merge(self, lines: list[CutLine]) -> tuple[int, int, int, int] | None:
         """Return the best chord between two loops of which one at least is a hole."""
         best, choice = np.inf, None
         for p, one in enumerate(lines):
             for q, two in enumerate(lines[p + 1 :], start=p + 1):
-                if _area(one.points) > 0.0 and _area(two.points) > 0.0:
+                if signed_area(one.points) > 0.0 and signed_area(two.points) > 0.0:
                     continue
                 a, b = np.meshgrid(_spread(one), _spread(two), indexing="ij")
                 if not a.size:
@@ -214,7 +176,7 @@ class _ChordCost:
         return choice
 
 
-def _spread(line: _Line) -> IntArray:
+def _spread(line: CutLine) -> IntArray:
     """Return vertices to try, evenly spread, none of them an end of an earlier chord."""
     free = np.flatnonzero((line.chord == 0) & (np.roll(line.chord, 1) == 0))
     stride = max(1, len(free) // CANDIDATES)
@@ -230,48 +192,3 @@ def _dense(loops: list[FloatArray], step: float) -> list[FloatArray]:
         wanted = np.unique(np.concatenate([arc[:-1], np.arange(0.0, arc[-1], step)]))
         result.append(np.column_stack([np.interp(wanted, arc, closed[:, k]) for k in (0, 1)]))
     return result
-
-
-def _chord(start: FloatArray, end: FloatArray, loop: FloatArray) -> FloatArray:
-    """Return a chord with points as far apart as the loop's."""
-    side = float(np.linalg.norm(np.diff(loop, axis=0), axis=1).mean())
-    parts = max(1, round(float(np.linalg.norm(end - start)) / side))
-    return np.asarray(start + (np.arange(parts + 1) / parts)[:, None] * (end - start))
-
-
-def _area(points: FloatArray) -> float:
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-
-
-def _assembled(
-    joined: list[FloatArray], lines: list[_Line], chords: list[tuple[tuple[int, int], tuple[int, int]]]
-) -> BridgeCut:
-    """Return edges, wholes and parts once all chords are drawn."""
-    pins = {end for chord in chords for end in chord}
-    edges: list[FloatArray] = []
-    number: dict[tuple[int, int], int] = {}  # pinned vertex that an arc leaves → edge
-    wholes = []
-    for w, points in enumerate(joined):
-        own = sorted(v for loop, v in pins if loop == w)
-        if not own:
-            own = [0]
-        first = len(edges)
-        for v, after in zip(own, [*own[1:], own[0] + len(points)], strict=True):
-            number[w, v] = len(edges)
-            edges.append(points[np.arange(v, after + 1) % len(points)])
-        uses = tuple((k, True) for k in range(first, len(edges)))
-        wholes.append(Part(points, np.array(own), uses))
-    arcs = len(edges)
-    edges += [_chord(joined[a][i], joined[b][j], joined[a]) for (a, i), (b, j) in chords]
-    parts = []
-    for line in lines:
-        at = [k for k in range(len(line.points)) if _source(line, k) in number]
-        uses = tuple(
-            (number[_source(line, k)], True)
-            if line.chord[k] == 0
-            else (arcs + abs(int(line.chord[k])) - 1, int(line.chord[k]) > 0)
-            for k in at
-        )
-        parts.append(Part(line.points, np.array(at), uses))
-    return BridgeCut(tuple(edges), tuple(wholes), tuple(parts))

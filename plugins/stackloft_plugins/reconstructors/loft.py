@@ -12,6 +12,7 @@ from stackloft.geometry.skin import skin
 from stackloft.model.arrays import FloatArray, read_only
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.ends import End
+from stackloft.model.errors import InputError
 from stackloft.model.lengths import parse_length
 from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
@@ -27,6 +28,9 @@ from stackloft_plugins.reconstructors.end_reports import (
     row_end,
 )
 from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
+
+FEWEST = 2
+"""Sections that a solid needs."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,13 @@ class LoftReconstructor:
         InputError
             The sections cannot be lofted, or ends and height contradict each other.
         """
+        if len(product) < FEWEST:
+            raise InputError(
+                "a solid needs at least 2 sections",
+                where=product.sections[0].name if len(product) else None,
+                found=str(len(product)),
+                fix="give the whole stack, not one slice",
+            )
         if not is_single(product):
             return loft_tubes(product, self.points, self._said(product), self._height(product))
         sections = equal_points(product, self.points * more_points(product))

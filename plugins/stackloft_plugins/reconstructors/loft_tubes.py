@@ -18,17 +18,9 @@ from stackloft.model.lofted_solid import Joint, JointRim, LoftedSolid, Shell, Sh
 from stackloft.model.measurement import EndReport
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas, fold_error
-from stackloft.sectioning.tube_plan import (
-    FACE,
-    FINER,
-    PlannedTube,
-    Roof,
-    TubeEnd,
-    TubePlan,
-    more_points,
-    plan_tubes,
-    replace_row,
-)
+from stackloft.sectioning.stack_roofs import Roof
+from stackloft.sectioning.tube_ends import FACE, PlannedTube, TubeEnd, replace_row
+from stackloft.sectioning.tube_plan import FINER, TubePlan, more_points, plan_tubes
 from stackloft_plugins.reconstructors.end_reports import (
     end_report,
     flipped,

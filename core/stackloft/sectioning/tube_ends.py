@@ -1,0 +1,173 @@
+"""How every tube of a stack ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stackloft.geometry.curve_stack import fit_curves
+from stackloft.geometry.end_model import distance_to_end
+from stackloft.model.arrays import FloatArray
+from stackloft.model.contour_stack import Loop
+from stackloft.model.ends import EndKind
+from stackloft.model.errors import InputError
+from stackloft.sectioning.dense_loops import curve_polygon
+from stackloft.sectioning.ends import PlannedEnd
+from stackloft.sectioning.levels import is_hole
+from stackloft.sectioning.roof import Thickness, half_thickness, roof_levels
+from stackloft.sectioning.section_regions import OUTSIDE, section_regions
+from stackloft.sectioning.stack_roofs import OUTER, Side, sees_all
+from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops
+
+SIDES = 160
+"""About how many sides a section's loop has as a polygon."""
+FACE = PlannedEnd(EndKind.FACE, 0.0, "closed over its ridge", guessed=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TubeEnd:
+    """How one end of a tube is closed."""
+
+    planned: PlannedEnd | None
+    """None at a joint."""
+    joint: JointUse | None = None
+    outer: bool = False
+    """True at the stack's first or last section (or on the roof beyond it)."""
+    opening: bool = False
+    """True where a hole's plane end opens in the face around it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedTube:
+    """A tube and its ends."""
+
+    rows: tuple[Row, ...]
+    ends: tuple[TubeEnd, TubeEnd]
+
+    @property
+    def hole(self) -> bool:
+        """True for a hole or cavity."""
+        return self.rows[0].hole
+
+
+def planned_tube(tube: TubeOfLoops, sections: int, sides: list[Side]) -> PlannedTube:
+    """Return a tube with its ends decided; rows are added where it ends between two sections."""
+    rows = list(tube.rows)
+    ends = []
+    for at_last in (False, True):
+        told = tube.ends[at_last]
+        row = rows[-1] if at_last else rows[0]
+        outer = row.section == (sections - 1 if at_last else 0)
+        if isinstance(told, JointUse):
+            ends.append(TubeEnd(None, told))
+        elif outer:
+            z, areas = _outermost(rows, at_last=at_last)
+            ends.append(TubeEnd(sides[at_last].plan(z, areas), outer=True))
+        elif not np.isfinite(told):
+            ends.append(TubeEnd(FACE, outer=True))
+        else:
+            rows, planned = _vanishing(rows, float(told), at_last=at_last)
+            ends.append(TubeEnd(planned))
+    return PlannedTube(tuple(rows), (ends[0], ends[1]))
+
+
+def _outermost(rows: list[Row], *, at_last: bool) -> tuple[FloatArray, FloatArray]:
+    """Return positions and areas of a tube's outermost sections, outermost first."""
+    inward = rows[::-1] if at_last else rows
+    real = [row for row in inward if row.section is not None]
+    chosen = (real if len(real) >= 2 else inward)[:OUTER]
+    return np.array([row.z for row in chosen]), np.array([abs(row.loop.signed_area) for row in chosen])
+
+
+def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row], PlannedEnd]:
+    """Return rows and end of a tube that ends before the next level, `gap` mm away.
+
+    Where the areas close before that level there is a pole; otherwise a plane face half-way.
+    """
+    roofed = _vanishing_ridge(rows, gap, at_last=at_last)
+    if roofed is not None:
+        return roofed, FACE
+    z, areas = _outermost(rows, at_last=at_last)
+    root = distance_to_end(areas, np.abs(z - z[0])) if len(z) >= 2 else None
+    if root is not None and root < gap:
+        return rows, PlannedEnd(EndKind.ROUND, root, "the areas reach zero there", guessed=False)
+    if len(z) == 1:
+        return rows, PlannedEnd(EndKind.ROUND, 0.5 * gap, "seen on one section alone", guessed=False)
+    row = rows[-1] if at_last else rows[0]
+    half = replace_row(row, row.z + (0.5 * gap if at_last else -0.5 * gap))
+    face = PlannedEnd(EndKind.FACE, 0.0, "half-way to the section without it", guessed=False)
+    return ([*rows, half] if at_last else [half, *rows]), face
+
+
+def _vanishing_ridge(rows: list[Row], gap: float, *, at_last: bool) -> list[Row] | None:
+    """Return the rows with a ridge beyond a strongly bent end; None where a pole will do."""
+    inward = rows[::-1] if at_last else rows
+    if sees_all(inward[0].loop.points):
+        return None
+    chosen = [row for row in inward if row.section is not None][:OUTER] or inward[:1]
+    half = np.array([half_thickness([_short_sides(row.loop)]) for row in chosen])
+    depth = np.array([abs(row.z - chosen[0].z) for row in chosen])
+    root = distance_to_end(half**2, depth) if len(chosen) >= 2 else None
+    length = root if root is not None and root < gap else 0.5 * gap
+    outermost = inward[0]
+    outward = 1.0 if at_last else -1.0
+    beyond = []
+    for distance, loops in roof_levels([_short_sides(outermost.loop)], Thickness(half, depth), length):
+        if len(loops) != 1:
+            break
+        beyond.append(
+            Row(outermost.z + outward * distance, Loop(loops[0]), outermost.name, None, outermost.hole)
+        )
+    return [*rows, *beyond] if at_last else [*reversed(beyond), *rows]
+
+
+def _short_sides(loop: Loop) -> FloatArray:
+    curves = fit_curves([ccw(loop.points)], [np.empty(0, dtype=np.int64)])
+    return curve_polygon(curves, 0, float(curves.lengths[0]) / SIDES)
+
+
+def ccw(points: FloatArray) -> FloatArray:
+    """Return a polygon counter-clockwise."""
+    return points[::-1] if is_hole(points) else points
+
+
+def replace_row(row: Row, z: float) -> Row:
+    """Return a copy of a row at another position."""
+    return Row(z, row.loop, row.name, None, row.hole, row.pinned)
+
+
+def with_openings(tubes: tuple[PlannedTube, ...]) -> tuple[PlannedTube, ...]:
+    """Return the tubes, holes' plane outer ends marked as openings in the faces around them.
+
+    A hole's outer end follows the piece around it: where that ends in a plane, so does the hole.
+    """
+    result = []
+    for tube in tubes:
+        ends = list(tube.ends)
+        for k in (0, 1):
+            if tube.hole and ends[k].outer:
+                ends[k] = replace(ends[k], planned=_around(tubes, tube, k), opening=True)
+        result.append(PlannedTube(tube.rows, (ends[0], ends[1])))
+    return tuple(result)
+
+
+def _around(tubes: tuple[PlannedTube, ...], hole: PlannedTube, k: int) -> PlannedEnd:
+    """Return the end of the piece around a hole's outer end."""
+    row = hole.rows[-1 if k else 0]
+    best, least = None, np.inf
+    for tube in tubes:
+        other = tube.rows[-1 if k else 0]
+        if tube.hole or not tube.ends[k].outer or other.z != row.z:
+            continue
+        regions = section_regions([other.loop.points, row.loop.points])
+        area = abs(other.loop.signed_area)
+        if regions.parents[1] != OUTSIDE and area < least:
+            best, least = tube.ends[k].planned, area
+    if best is None or best.kind not in {EndKind.FACE, EndKind.FLAT}:
+        raise InputError(
+            "a hole reaches the end of the stack, but the body around it does not end there in a face",
+            where=row.name,
+            fix="give --ends face or flat:LEN, or cut thinner slices",
+        )
+    return best
