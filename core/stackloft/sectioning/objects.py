@@ -29,6 +29,7 @@ from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed
 from stackloft.sectioning.cut_bodies import cut_apart
 from stackloft.sectioning.kept_slices import KeptSlices
 from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, body_pieces, pieces_of
+from stackloft.sectioning.object_notices import cut_notice, stray_notice
 from stackloft.sectioning.voids import CRACK, VoidFinder, closed_background, void_notice
 
 CRUMB = 0.02
@@ -95,12 +96,12 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
         chosen = [_largest_of(volumes, kind == label) for label in segmentation.labels]
     else:
         chosen = [int(k) for k in np.argsort(-volumes, kind="stable") if volumes[k] >= CRUMB * volumes.max()]
-    told = _cut_notice(segmentation.neck, len(chosen))
+    told = cut_notice(segmentation.neck, len(chosen))
     return tuple(
         BodyObject(
             int(kind[k]) or None,
             float(volumes[k]),
-            _view(segmentation, linked, owner == k, (*_stray_notice(k, kind, volumes), *told)),
+            _view(segmentation, linked, owner == k, (*stray_notice(k, kind, volumes), *told)),
         )
         for k in chosen
     )
@@ -201,28 +202,6 @@ def _voxel_volumes(stack: SliceStack) -> FloatArray:
 
 def _largest_of(volumes: FloatArray, among: BoolArray) -> int:
     return int(np.argmax(np.where(among, volumes, -1.0)))
-
-
-def _stray_notice(k: int, kind: IntArray, volumes: FloatArray) -> tuple[Notice, ...]:
-    """Return a notice when a label has voxels away from its largest piece."""
-    if not kind[k]:
-        return ()
-    stray = float(volumes[kind == kind[k]].sum() - volumes[k])
-    if not stray:
-        return ()
-    share = 100 * stray / float(volumes[k])
-    text = f"label {kind[k]}: left out {stray:.4g} mm³ of stray voxels ({share:.2g} %) away from its body"
-    return (Notice("stray-voxels", text),)
-
-
-def _cut_notice(neck: float | None, count: int) -> tuple[Notice, ...]:
-    if neck is None or count < 2:
-        return ()
-    text = (
-        f"bodies that touch were cut apart where the neck is below {neck:g} of the thinner one's width:"
-        f" {count} bodies; a waist counts as a neck, so look at the overview"
-    )
-    return (Notice("bodies-cut", text),)
 
 
 def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[Notice, ...]) -> Segmentation:

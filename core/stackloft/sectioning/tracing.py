@@ -7,7 +7,6 @@ is said in a notice.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +23,7 @@ from stackloft.sectioning.border_chains import chain_lines
 from stackloft.sectioning.marching_squares import Crossings, closed_lines
 from stackloft.sectioning.nesting import inside_polygon
 from stackloft.sectioning.sub_pixel import REACH, crossing_points
+from stackloft.sectioning.trace_notices import border_notice, dropped_notice, filled_notice
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +103,11 @@ def trace_field(
     real, filled = _holes(kept, grid, rules)
     loops = tuple(_loop(line, grid, spacing) for line in (*kept, *real))
     perhaps = tuple(
-        (_loop(line, grid, spacing), _dropped_notice(line, kept[0].area, name)) for line in dropped
+        (_loop(line, grid, spacing), dropped_notice(line.area / kept[0].area, name)) for line in dropped
     )
     notices = (
-        *_filled_notice(filled, kept[0].area, rules, name),
-        *_border_notice(section, shape, name),
+        *filled_notice(-sum(hole.area for hole in filled) / kept[0].area, rules.unnoticed_hole, name),
+        *border_notice(section, shape, name),
     )
     return TracedLoops(loops, notices, perhaps)
 
@@ -217,38 +217,3 @@ def _loop(line: _Line, grid: _Grid, spacing: tuple[float, float]) -> Loop:
     points = pixels * np.array(spacing)[::-1]
     apart = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1) > 1e-9 * max(spacing)
     return Loop(frozen_floats(points[apart]), hole=line.area < 0)
-
-
-def _dropped_notice(dropped: _Line, largest: float, name: str) -> Notice:
-    return Notice(
-        "second-object",
-        f"{name}: left out a second object of {100 * dropped.area / largest:.1f} % of the body's area; "
-        "move it out of the picture, or give a mask in stack.toml if it belongs to the body",
-    )
-
-
-def _filled_notice(filled: list[_Line], largest: float, rules: TraceRules, name: str) -> Iterator[Notice]:
-    share = -sum(hole.area for hole in filled) / largest
-    if share >= rules.unnoticed_hole:
-        yield Notice(
-            "hole-filled",
-            f"{name}: filled holes of {100 * share:.2g} % of the body's area, taken for glare or seeds",
-        )
-
-
-def _border_notice(section: SectionField, shape: tuple[int, int], name: str) -> Iterator[Notice]:
-    inside = section.above()
-    (top, left), (rows, columns) = section.offset, inside.shape
-    sides = {
-        "top": top == 0 and inside[0].any(),
-        "bottom": top + rows == shape[0] and inside[-1].any(),
-        "left": left == 0 and inside[:, 0].any(),
-        "right": left + columns == shape[1] and inside[:, -1].any(),
-    }
-    touched = [side for side, touches in sides.items() if touches]
-    if touched:
-        yield Notice(
-            "border-contact",
-            f"{name}: the body touches the picture's {' and '.join(touched)} edge and is cut off there; "
-            "photograph it whole",
-        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from stackloft_plugins.readers.dicom_file import ClampedFile, read_elements, saf
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_lookup import Lookup
 from stackloft_plugins.readers.dicom_plain import PlainHeader, plain_header
+from stackloft_plugins.readers.dicom_values import number_of, positive_of, word_of, words_of
 
 if TYPE_CHECKING:
     from pydicom import Dataset
@@ -100,7 +101,7 @@ def _common(data: Dataset | PlainHeader, path: Path, *, keep_identifiers: bool) 
         number=0,
         series=str(data.get("SeriesInstanceUID", "")),
         series_number=None if number in {None, ""} else int(number),
-        modality=_word(data.get("Modality")),
+        modality=word_of(data.get("Modality")),
         order=(),
         shape=(int(data.get("Rows")), int(data.get("Columns"))),
         samples=int(data.get("SamplesPerPixel", 1)),
@@ -117,7 +118,7 @@ def _common(data: Dataset | PlainHeader, path: Path, *, keep_identifiers: bool) 
         stored=(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1),
         lookup=bool(data.get("ModalityLUTSequence")),
         syntax=str(data.file_meta.get("TransferSyntaxUID", IMPLICIT_LITTLE)),
-        localizer="LOCALIZER" in _words(data.get("ImageType")),
+        localizer="LOCALIZER" in words_of(data.get("ImageType")),
         private=tuple(kept),
     )
 
@@ -155,8 +156,8 @@ def _placed(common: Frame, lookup: Lookup, number: int, name: str) -> Frame:
         position=frozen_floats(position),
         axes=_axes(cosines, common.path),
         spacing=(float(spacing[0]), float(spacing[1])),
-        thickness=_positive(lookup.get("PixelMeasuresSequence", "SliceThickness")),
-        location=_number(lookup.get("PixelMeasuresSequence", "SliceLocation")),
+        thickness=positive_of(lookup.get("PixelMeasuresSequence", "SliceThickness")),
+        location=number_of(lookup.get("PixelMeasuresSequence", "SliceLocation")),
         slope=1.0 if slope is None else float(slope[0]),
         intercept=0.0 if intercept is None else float(intercept[0]),
         rescaled=slope is not None or intercept is not None,
@@ -191,7 +192,7 @@ def _check_image(data: Dataset | PlainHeader, path: Path) -> None:
     missing = [key for key in ("Rows", "Columns", "BitsAllocated", "BitsStored") if not data.get(key)]
     if missing:
         raise _lacking(path, f"{missing[0]}: it holds no picture", "image files alone")
-    if "MOSAIC" in _words(data.get("ImageType")):
+    if "MOSAIC" in words_of(data.get("ImageType")):
         raise InputError(
             "is a Siemens mosaic: many slices tiled in one picture, whose places are in private elements",
             where=str(path),
@@ -230,28 +231,6 @@ def _order(lookup: Lookup) -> tuple[int, ...]:
         lookup.get("", "InstanceNumber"),
     )
     return tuple(int(value or 0) for value in values)
-
-
-def _number(value: Any) -> float | None:
-    number = None if value in {None, ""} else float(value)
-    return number if number is not None and np.isfinite(number) else None
-
-
-def _positive(value: Any) -> float | None:
-    number = _number(value)
-    return number if number is not None and number > 0 else None
-
-
-def _words(value: Any) -> tuple[str, ...]:
-    if value is None or isinstance(value, str):
-        return (value or "",)
-    return tuple(str(word).upper() for word in value)
-
-
-def _word(value: Any) -> str:
-    """Return a code of at most 16 capital letters; anything else may be free text."""
-    text = str(value or "")
-    return text if text.isalnum() and text.isupper() and len(text) <= 4 else ""
 
 
 def _lacking(path: Path, what: str, expected: str) -> InputError:
