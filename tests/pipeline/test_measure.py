@@ -151,7 +151,7 @@ def test_a_type_no_chain_reaches(house, tmp_path):
 def test_methods_that_do_fit_are_named_and_run_under_all(house, tmp_path):
     path = tmp_path / "body.mesh"
     path.write_text("")
-    with pytest.raises(PluginError, match="methods that start from TriMesh: polyhedral, surface"):
+    with pytest.raises(PluginError, match="methods that start from TriMesh: polyhedral, repair, surface"):
         measure(MeasureRequest(path, method="loft"))
     result = measure(MeasureRequest(path, method="all")).result
     (body,) = result.objects

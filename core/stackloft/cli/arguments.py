@@ -59,7 +59,11 @@ Segmenter = Annotated[
 ]
 Method = Annotated[
     str | None,
-    typer.Option("--method", metavar="NAME,…|all", help="Method, the first is the main one."),
+    typer.Option(
+        "--method",
+        metavar="NAME,…|all",
+        help="Method, the first is the main one. all: every one but those that take minutes.",
+    ),
 ]
 Points = Annotated[int | None, typer.Option("--points", help="Boundary points per section.")]
 Ends = Annotated[

@@ -30,5 +30,5 @@ class Recipe:
     area_bias: Bias | None = None
     """Likewise for its areas. What an integrator says of one body (`Integral`) wins."""
     slow: bool = False
-    """Takes seconds to minutes for a body: ``all`` has it, studies of many bodies only when it is named."""
+    """Takes minutes for a body: ``all`` and studies of many bodies have it only when it is named."""
     api: str = "1"

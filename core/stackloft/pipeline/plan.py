@@ -145,8 +145,10 @@ def _choose_segmenter(request: MeasureRequest, kinds: tuple[type, ...]) -> Loade
 
 
 def _may_start(name: str, kinds: tuple[type, ...]) -> bool:
-    """Return whether anybody would miss the method under ``all``: not one for surfaces when none is read."""
+    """Return whether anybody would miss the method under ``all``: no slow one, none for surfaces not read."""
     recipe = load(next(x for x in catalogue("recipe") if name in {x.name, x.qualified}))
+    if isinstance(recipe, Loaded) and recipe.plugin.slow:
+        return False  # minutes for a body: only for who names it
     if any(issubclass(kind, TriMesh) for kind in kinds) or not isinstance(recipe, Loaded):
         return True
     family, _, first = recipe.plugin.steps[0].partition(".")
