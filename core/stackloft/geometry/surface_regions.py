@@ -54,7 +54,9 @@ class SurfaceRegions:
         return len(self.plane)
 
 
-def surface_regions(vertices: FloatArray, faces: IntArray, angle: float = SHARP) -> SurfaceRegions:
+def surface_regions(
+    vertices: FloatArray, faces: IntArray, angle: float = SHARP, least: float = 0.0
+) -> SurfaceRegions:
     """Return the regions of a closed, oriented surface.
 
     Parameters
@@ -63,6 +65,9 @@ def surface_regions(vertices: FloatArray, faces: IntArray, angle: float = SHARP)
     faces : (t, 3) int array
     angle : float
         Degrees between triangles that lie in different regions.
+    least : float
+        Part of the whole area below which a region goes to its neighbour; above 0, sharp edges within a
+        region do not count.
 
     Examples
     --------
@@ -80,8 +85,12 @@ def surface_regions(vertices: FloatArray, faces: IntArray, angle: float = SHARP)
     joined = coo_array((np.ones(smooth.sum()), tuple(pairs[smooth].T)), shape=(len(faces),) * 2)
     parts = connected_components(joined, directed=False)[1].astype(np.int64)
     region = _adopted(parts, solid, pairs)
+    if least > 0.0:
+        region = _without_crumbs(region, pairs, _lengths(vertices, edges), _areas(vertices, faces), least)
     count = int(region.max()) + 1
-    sharp = (region[pairs[:, 0]] != region[pairs[:, 1]]) | (whole & ~smooth)
+    sharp = region[pairs[:, 0]] != region[pairs[:, 1]]
+    if not least > 0.0:
+        sharp |= whole & ~smooth
     sides, sharp = np.sort(region[pairs[sharp]], axis=1), edges[sharp]
     plane = np.array([_is_plane(vertices, faces[region == k], normals[region == k]) for k in range(count)])
     corners = _corners(vertices, faces, sharp, sides)
@@ -101,6 +110,34 @@ def _adopted(region: IntArray, solid: BoolArray, pairs: IntArray) -> IntArray:
             break
         result[taking[:, 0]] = result[taking[:, 1]]
     return np.unique(result, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _without_crumbs(
+    region: IntArray, pairs: IntArray, lengths: FloatArray, areas: FloatArray, least: float
+) -> IntArray:
+    """Return the regions with each that is smaller than `least` in the one it has the longest border with."""
+    result = region.copy()
+    while True:
+        size = np.bincount(result, areas)
+        small = np.flatnonzero((size < least * areas.sum()) & (np.bincount(result) > 0))
+        sides = result[pairs]
+        border = sides[:, 0] != sides[:, 1]
+        small = small[np.isin(small, sides[border])]
+        if not len(small):
+            return np.unique(result, return_inverse=True)[1].reshape(-1).astype(np.int64)
+        crumb = small[np.argmin(size[small])]
+        mine = border & (sides == crumb).any(axis=1)
+        other = np.where(sides[mine, 0] == crumb, sides[mine, 1], sides[mine, 0])
+        result[result == crumb] = np.argmax(np.bincount(other, lengths[mine]))
+
+
+def _lengths(vertices: FloatArray, edges: IntArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(vertices[edges[:, 1]] - vertices[edges[:, 0]], axis=1))
+
+
+def _areas(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
 
 
 def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:

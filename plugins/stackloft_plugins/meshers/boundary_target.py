@@ -24,6 +24,8 @@ from stackloft_plugins.meshers.closest_triangle import ClosestTriangle
 
 MANY = 200
 """Regions above which a surface is taken for rough, and for one region."""
+_CRUMB = 1e-3
+"""Part of a loft's area below which a region is none of its own."""
 _SAME = 1e-8
 """Part of the surface's size within which points are the same."""
 Projection = Callable[[FloatArray], FloatArray]
@@ -118,7 +120,8 @@ def boundary_target(surface: TriMesh, patches: FloatArray | None = None) -> Boun
     patches : (k, 4, 4, 3) array, optional
         Where the triangles come from, in the same millimetres.
     """
-    regions = surface_regions(surface.vertices, surface.faces)
+    least = 0.0 if patches is None else _CRUMB  # where tubes join, a tessellation has odd triangles
+    regions = surface_regions(surface.vertices, surface.faces, least=least)
     if regions.count > MANY:
         regions = surface_regions(surface.vertices, surface.faces, angle=180.0)
     return BoundaryTarget(surface, regions, patches, ClosestTriangle(surface.vertices, surface.faces))

@@ -47,10 +47,10 @@ class Tetwild:
     """Tetrahedra in any closed surface (Hu et al. 2020, fTetWild), their boundary moved to where it belongs.
 
     fTetWild's boundary lies within `epsilon` of the surface, on the whole inside of it: linear elements taken
-    as they come are low in volume by one to three times that. Here every boundary node is put on the exact
-    surface, on its sharp edges and corners, before anything is measured; curved elements follow it
-    between. fTetWild has no seed, so that no two meshes are the same; how far a mesh is off its own surface
-    is known, and travels with it as its uncertainty. It runs in a process of its own.
+    as they come are low in volume by about three times its share of the diagonal. Here every boundary node is
+    put on the exact surface, on its sharp edges and corners, before anything is measured; curved elements
+    follow it between. fTetWild has no seed, so that no two meshes are the same; how far a mesh is off its own
+    surface is known, and travels with it as its uncertainty. It runs in a process of its own.
     """
 
     order: int = option(2, "polynomial degree of the elements: 1, 2 or 3", ge=1, le=3)
