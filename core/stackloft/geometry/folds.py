@@ -11,6 +11,9 @@ from stackloft.geometry.simple_polygon import crosses_itself
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+SLIP = 0.003
+"""Largest part of a section's area in a loop that it makes by crossing itself: a traced notch that slips by a
+fraction of a pixel is no fold."""
 _HALF = bernstein(np.array([0.5]))
 _ALONG = bernstein(np.array([0.0, 0.5]))
 _ACROSS = bernstein(np.linspace(0.0, 1.0, 9))
@@ -28,7 +31,7 @@ def folded_rows(patches: FloatArray) -> BoolArray:
     -------
     (rows,) bool array
         True where z does not increase all along v (the surface's Jacobian changes sign there), or where
-        the section half-way crosses itself.
+        the section half-way crosses itself by more than `SLIP` of its area.
 
     Examples
     --------
@@ -40,9 +43,34 @@ def folded_rows(patches: FloatArray) -> BoolArray:
     [False, False]
     """
     half = evaluate(patches, _HALF, _ALONG)[:, :, 0, :, :2]
-    crossing = crosses_itself(half.reshape(len(patches), -1, 2))
+    sections = half.reshape(len(patches), -1, 2)
+    crossing = crosses_itself(sections)
+    crossing[crossing] = [_largest_lobe(polygon) > SLIP for polygon in sections[crossing]]
     z = np.einsum("av,rcv->rca", _ACROSS, patches[:, :, :, 0, 2])
     rise = np.diff(z, axis=-1)
     length = np.abs(z[..., -1:] - z[..., :1])
     back = (rise < -1e-6 * np.maximum(length, 1e-300)).any(axis=(1, 2))
     return np.asarray(crossing | back)
+
+
+def _largest_lobe(polygon: FloatArray) -> float:
+    """Return the largest part of a polygon's area that lies in a loop between two of its edges that cross."""
+    start, edge = polygon, np.roll(polygon, -1, axis=0) - polygon
+    between = start[None] - start[:, None]
+    cross = edge[:, None, 0] * edge[None, :, 1] - edge[:, None, 1] * edge[None, :, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (between[..., 0] * edge[None, :, 1] - between[..., 1] * edge[None, :, 0]) / cross
+    found = (t > 0.0) & (t < 1.0)
+    found &= found.T
+    whole = abs(_area(polygon))
+    worst = 0.0
+    for i, j in np.argwhere(np.triu(found, 2)):
+        lobe = np.concatenate([[start[i] + t[i, j] * edge[i]], polygon[i + 1 : j + 1]])
+        part = abs(_area(lobe))
+        worst = max(worst, min(part, abs(whole - part)) / whole)
+    return worst
+
+
+def _area(points: FloatArray) -> float:
+    x, y = (points - points[0]).T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

@@ -103,7 +103,9 @@ def trace_field(
     real, filled = _holes(kept, grid, rules)
     loops = tuple(_loop(line, grid, spacing) for line in (*kept, *real))
     perhaps = tuple(
-        (_loop(line, grid, spacing), dropped_notice(line.area / kept[0].area, name)) for line in dropped
+        (_loop(line, grid, spacing), dropped_notice(line.area / kept[0].area, name))
+        for line in dropped
+        if not _inside_any(line, kept)  # what lies in a hole that is filled is filled with it
     )
     notices = (
         *filled_notice(-sum(hole.area for hole in filled) / kept[0].area, rules.unnoticed_hole, name),
@@ -194,6 +196,11 @@ def _holes(kept: list[_Line], grid: _Grid, rules: TraceRules) -> tuple[list[_Lin
     through = [hole for hole in notable if _median_within(hole, field) <= clear]
     real = [hole for hole in through if -hole.area >= rules.hole * kept[0].area]
     return real, [hole for hole in through if hole not in real]
+
+
+def _inside_any(line: _Line, outlines: list[_Line]) -> bool:
+    """Return whether a line lies inside one of the outlines."""
+    return any(inside_polygon(line.rough[:1], outline.rough)[0] for outline in outlines)
 
 
 def _background(field: FloatArray) -> float:

@@ -29,6 +29,8 @@ from stackloft_plugins.reconstructors.end_reports import (
     row_end,
 )
 
+SLIGHT = 0.05
+"""Tubes thinner than this fraction of the largest section may fold unseen: a crumb, a tip of two sections."""
 HAIR = 1e-3
 """A tube of one row alone is given this fraction of its size as height at most."""
 
@@ -166,7 +168,10 @@ def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
     Levels put in lie closer together than their loops are known; between them nothing is looked for.
     """
     found = {}
-    for one in skinned:
+    sizes = [max(abs(row.loop.signed_area) for row in one.tube.rows) for one in skinned]
+    for one, size in zip(skinned, sizes, strict=True):
+        if size < SLIGHT * max(sizes):
+            continue
         rows = one.tube.rows
         first = int(one.patches[0, 0, 0, 0, 2] < rows[0].z - 1e-12 * abs(rows[0].z))
         pairs = [
