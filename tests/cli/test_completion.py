@@ -34,7 +34,7 @@ def ask(stackloft):
 
 
 CASES = {
-    "stackloft me": ["measure"],
+    "stackloft me": ["measure", "mesh"],
     "stackloft measure x --meth": ["--method"],
     "stackloft measure x --method carr": [],
     "stackloft measure x --method fru": ["frustum"],

@@ -29,7 +29,16 @@ def test_the_stack_toml_shown_is_read_and_every_key_is_explained():
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_flag_shown_exists(stackloft, page):
     known = {"--help", "--no-build-isolation", "--no-deps"}  # the last two are pip's
-    for command in ("measure", "info", "phantom", "regress", "convergence", "accuracy", "plugins list"):
+    for command in (
+        "measure",
+        "info",
+        "mesh",
+        "phantom",
+        "regress",
+        "convergence",
+        "accuracy",
+        "plugins list",
+    ):
         known |= set(re.findall(r"--[a-z-]+", stackloft(*command.split(), "--help").stdout))
     shown = set(re.findall(r"(?<=[\s`])--[a-z][a-z-]*[a-z]\b(?!-)", page.read_text(encoding="utf-8")))
     assert shown <= known
