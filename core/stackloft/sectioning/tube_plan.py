@@ -22,6 +22,8 @@ from stackloft.sectioning.tube_ends import (
 )
 from stackloft.sectioning.tubes import TubeSet, trace_tubes
 
+SPECK = 1e-6
+"""Loops below this fraction of the section's largest are no part of any body."""
 LONG = 2.2
 """Perimeter² / (4π area) of an outline that needs more points; a circle has 1, a 4.5 : 1 ellipse 2."""
 FINER = 3
@@ -95,10 +97,12 @@ def _levels(contours: ContourStack) -> tuple[list[Level], FloatArray]:
         polygons = [
             curve_polygon(curves, k + i, float(curves.lengths[k + i]) / SIDES) for i in range(len(loops))
         ]
-        level = make_level(section.z, list(loops), polygons, section.name, number)
+        own = curves.areas[k : k + len(loops)]
+        kept = np.flatnonzero(own >= SPECK * own.max(initial=0.0))
+        level = make_level(
+            section.z, [loops[i] for i in kept], [polygons[i] for i in kept], section.name, number
+        )
         levels.append(level)
-        areas[number] = curves.areas[k : k + len(loops)] @ [
-            -1.0 if is_hole(p) else 1.0 for p in level.polygons
-        ]
+        areas[number] = own[kept] @ [-1.0 if is_hole(p) else 1.0 for p in level.polygons]
         k += len(loops)
     return levels, areas
