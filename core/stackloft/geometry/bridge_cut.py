@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
-from stackloft.geometry.bridge_edges import BridgeCut, CutLine, assembled, signed_area, source
+from stackloft.geometry.bridge_edges import BridgeCut, CutLine, assembled, source
 from stackloft.geometry.polygon_distance import signed_distance
+from stackloft.geometry.shoelace import polygon_area
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -111,7 +112,7 @@ class _ChordCost:
         self._origin = np.array([x[0], y[0]])
         self._own = signed_distance(x, y, _dense(joined, self._step))
         self._other = signed_distance(x, y, _dense(parted, self._step))
-        outlines = [p for p in parted if signed_area(p) > 0.0]
+        outlines = [p for p in parted if polygon_area(p) > 0.0]
         self._count = len(outlines)
         if outlines:
             self._labels = np.concatenate([np.full(len(p), k) for k, p in enumerate(outlines)])
@@ -163,7 +164,7 @@ class _ChordCost:
         best, choice = np.inf, None
         for p, one in enumerate(lines):
             for q, two in enumerate(lines[p + 1 :], start=p + 1):
-                if signed_area(one.points) > 0.0 and signed_area(two.points) > 0.0:
+                if polygon_area(one.points) > 0.0 and polygon_area(two.points) > 0.0:
                     continue
                 a, b = np.meshgrid(_spread(one), _spread(two), indexing="ij")
                 if not a.size:

@@ -58,12 +58,6 @@ def _chord(start: FloatArray, end: FloatArray, loop: FloatArray) -> FloatArray:
     return np.asarray(start + (np.arange(parts + 1) / parts)[:, None] * (end - start))
 
 
-def signed_area(points: FloatArray) -> float:
-    """Return a polygon's area, mm²; positive when counter-clockwise."""
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-
-
 def assembled(
     joined: list[FloatArray], lines: list[CutLine], chords: list[tuple[tuple[int, int], tuple[int, int]]]
 ) -> BridgeCut:

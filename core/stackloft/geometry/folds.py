@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.geometry.bezier_patch import bernstein, evaluate
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.simple_polygon import crosses_itself
 
 FloatArray = NDArray[np.float64]
@@ -62,15 +63,10 @@ def _largest_lobe(polygon: FloatArray) -> float:
         t = (between[..., 0] * edge[None, :, 1] - between[..., 1] * edge[None, :, 0]) / cross
     found = (t > 0.0) & (t < 1.0)
     found &= found.T
-    whole = abs(_area(polygon))
+    whole = abs(polygon_area(polygon))
     worst = 0.0
     for i, j in np.argwhere(np.triu(found, 2)):
         lobe = np.concatenate([[start[i] + t[i, j] * edge[i]], polygon[i + 1 : j + 1]])
-        part = abs(_area(lobe))
+        part = abs(polygon_area(lobe))
         worst = max(worst, min(part, abs(whole - part)) / whole)
     return worst
-
-
-def _area(points: FloatArray) -> float:
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

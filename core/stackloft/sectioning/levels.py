@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.section_regions import section_regions
@@ -38,7 +39,7 @@ def make_level(
     """
     regions = section_regions(polygons, name)
     turned = [
-        (loop, p) if (_area(p) < 0.0) == bool(hole) else (_reversed(loop), p[::-1])
+        (loop, p) if (polygon_area(p) < 0.0) == bool(hole) else (_reversed(loop), p[::-1])
         for loop, p, hole in zip(loops, polygons, regions.holes, strict=True)
     ]
     return Level(z, tuple(t[0] for t in turned), tuple(t[1] for t in turned), name, section)
@@ -50,12 +51,7 @@ def _reversed(loop: Loop) -> Loop:
 
 def is_hole(polygon: FloatArray) -> bool:
     """Return whether a level's polygon bounds a hole: it runs clockwise."""
-    return _area(polygon) < 0.0
-
-
-def _area(points: FloatArray) -> float:
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    return polygon_area(polygon) < 0.0
 
 
 def part_level(level: Level, chosen: tuple[int, ...]) -> Level:
@@ -71,7 +67,7 @@ def part_level(level: Level, chosen: tuple[int, ...]) -> Level:
 
 def covered(level: Level) -> float:
     """Return the area of a level's loops, holes subtracted, mm²."""
-    return float(sum(_area(p) for p in level.polygons))
+    return float(sum(polygon_area(p) for p in level.polygons))
 
 
 def plain_level(z: float, loops: list[FloatArray], name: str) -> Level:
@@ -81,5 +77,5 @@ def plain_level(z: float, loops: list[FloatArray], name: str) -> Level:
 
 def loop_counts(level: Level) -> tuple[int, int]:
     """Return the numbers of outlines and of holes."""
-    holes = sum(_area(p) < 0.0 for p in level.polygons)
+    holes = sum(polygon_area(p) < 0.0 for p in level.polygons)
     return len(level.polygons) - holes, holes

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stackloft.geometry.polygon_distance import signed_distance
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.sectioning.loop_links import bounding_box
 from stackloft.sectioning.marching_squares import closed_lines
@@ -74,9 +75,9 @@ def between(
         moves sideways; their level is set so that they do not.
     """
     x, y = plane_grid([*before, *after])
-    largest = max([*before, *after], key=lambda p: abs(_area(p)))
+    largest = max([*before, *after], key=lambda p: abs(polygon_area(p)))
     fields = signed_distance(x, y, before), signed_distance(x, y, after)
-    return BetweenField(x, y, *fields, area, hollow=_area(largest) < 0.0)
+    return BetweenField(x, y, *fields, area, hollow=polygon_area(largest) < 0.0)
 
 
 def level_of_area(field: FloatArray, step: float, area: float) -> float:
@@ -124,14 +125,9 @@ def zero_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArr
         t = f0 / (f0 - f1)
         step = x[1] - x[0]
         points = np.column_stack([x[column] + t * step * ~line.down, y[row] + t * step * line.down])
-        if abs(_area(points)) > LEAST**2 * size:
+        if abs(polygon_area(points)) > LEAST**2 * size:
             loops.append(_evened(points))
     return loops
-
-
-def _area(points: FloatArray) -> float:
-    x, y = (points - points[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _evened(points: FloatArray) -> FloatArray:
@@ -175,5 +171,5 @@ def _reach(field: BetweenField, start: float, stop: float) -> float:
 
 def _topology(loops: list[FloatArray]) -> tuple[int, int]:
     """Return the numbers of outlines and holes."""
-    holes = sum(_area(p) < 0.0 for p in loops)
+    holes = sum(polygon_area(p) < 0.0 for p in loops)
     return len(loops) - holes, holes
