@@ -177,6 +177,15 @@ CASES: Mapping[str, Mapping[str, Any]] = {
     "writer.json": {"read": _json_figures, "expected": _figures},
     "writer.mphtxt": {"read": read_mphtxt},
     "writer.csv": {"read": _csv_areas, "expected": _areas},
+    "mesher.tetwild": {
+        "steadiness": 3e-3
+    },  # its envelope is a part of the whole surface's size, not of each body's
+    "reconstructor.shape-interpolation": {
+        "expected_failures": {
+            "additivity": "two bodies share one grid of 96 steps across both, coarser than one body's own:"
+            " at 8 sections volume comes 0.5 % low",
+        },
+    },
     "integrator.frustum": {
         "expected_failures": {
             "convergence": "frusta know a section's area and perimeter alone: the area stays 4.6 % off on"

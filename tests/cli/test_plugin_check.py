@@ -4,9 +4,6 @@ import json
 
 import pytest
 
-from stackloft.registry import catalogue
-from stackloft.testing.conformance.suites import checks_of
-
 
 @pytest.mark.parametrize(
     "name", ["photos", "reader.numpy", "contours", "writer.json", "writer.csv", "stl", "recipe.loft"]
@@ -45,10 +42,3 @@ def test_what_cannot_be_checked_is_one_line(stackloft, name, status, words):
     run = stackloft("plugins", "check", name)
     assert (run.returncode, run.stdout) == (status, "")
     assert words in run.stderr
-
-
-@pytest.mark.prove
-@pytest.mark.parametrize("listing", catalogue(), ids=lambda listing: listing.key)
-def test_every_built_in_that_the_kit_knows_how_to_feed_holds(listing):
-    for check in checks_of(listing.key):
-        check()

@@ -52,7 +52,10 @@ class Polyhedral:
         self.check(product)
         a, b, c = self.corners(product)
         cross = np.cross(b - a, c - a)
-        return Integral(float((a * cross).sum() / 6), float(np.linalg.norm(cross, axis=1).sum() / 2))
+        volume = float((a * cross).sum() / 6)
+        if volume <= 0:
+            raise InputError("the surface is inside out")
+        return Integral(volume, float(np.linalg.norm(cross, axis=1).sum() / 2))
 
     def corners(self, product):
         vertices = product.vertices - product.vertices.mean(axis=0)
@@ -150,6 +153,18 @@ class NeglectsTheAffine(Rectangle):
         return Integral(super().integrate(product).volume * abs(product.affine[2, 2]), None)
 
 
+class LargestLoopOnly(Rectangle):
+    def areas(self, product):
+        return np.array([max(abs(polygon_area(x.points)) for x in s.loops) for s in product.sections])
+
+
+class InsideOutWillDo(Polyhedral):
+    def integrate(self, product):
+        self.check(product)
+        a, b, c = self.corners(product)
+        return Integral(float((a * np.cross(b - a, c - a)).sum() / 6), None)
+
+
 class OpenSurfaceWillDo(Polyhedral):
     def check(self, product):
         if not len(product.faces):
@@ -194,6 +209,8 @@ FAULTS = {
     ReturnsATuple: "figures",
     RoundsToMillimetres: "scaling",
     NeglectsTheAffine: "affine-motion",
+    LargestLoopOnly: "additivity",
+    InsideOutWillDo: "orientation",
     OpenSurfaceWillDo: "refuses-open",
     NotCentred: "rigid-motion",
     WithoutHelp: "options-validated",

@@ -83,6 +83,7 @@ FAULTS = {
     spoilt("Writable", lambda m: replace(m, nodes=m.nodes.copy())): "meshes",
     spoilt("GapsClosed", before=patched_up): "refuses-open",
     dataclass(frozen=True)(type("Something", (SWEEP,), {"mesh": something_for_nothing})): "refuses-empty",
+    spoilt("OneBodyOfTwo", before=lambda s: replace(s, shells=s.shells[:1])): "additivity",
     spoilt("AxisAligned", moved(lambda x: x * [1.0, 1.0, 1.01])): "rigid-motion",
 }
 
@@ -93,7 +94,7 @@ def test_sweep_passes(check):
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
-def test_a_seeded_fault_is_caught_by_its_check(fault):
+def test_seeded_faults_are_caught(fault):
     assert FAULTS[fault] in CHECKS
     case = MesherCase(fault, SMALL, steadiness=1e-3)
     check = next(x for x in mesher_checks(case) if x.name == FAULTS[fault])

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
-from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
-from stackloft.sectioning.section_measures import measure_loops, section_areas
+from stackloft.sectioning.section_measures import LoopMeasures, measure_loops, section_areas
 
 
 @dataclass(frozen=True)
@@ -22,8 +23,8 @@ class Frustum:
     Engineering: each slice is a frustum of a cone with the sections' areas A and mean radii P/2π,
     V = h·(A₁ + A₂ + √(A₁A₂))/3, side = (P₁ + P₂)/2 · √(h² + (P₁ − P₂)²/4π²). Both volume and area stop
     at the outermost sections, so they err low on bodies with round ends, and the side is exact only for
-    coaxial similar sections. Several outlines, and holes, have frustums of their own, all of one mean
-    radius; where their number changes from one section to the next, sides are taken as upright.
+    coaxial similar sections. Several outlines, and holes, have frustums of their own, each with the nearest
+    of the next section; where their number changes from one section to the next, sides are taken as upright.
     """
 
     api: ClassVar[str] = "1"
@@ -50,19 +51,20 @@ class Frustum:
         a, b = areas[:-1], areas[1:]
         volume = float((height * (a + b + np.sqrt(a * b))).sum() / 3.0)
         loops = measure_loops(product)
-        sides = sum(
-            _sides(height, loops.section[own], loops.perimeters[own])
-            for own in (loops.sign > 0.0, loops.sign < 0.0)
-        )
+        sides = sum(_sides(height, loops, loops.sign == sign) for sign in (1.0, -1.0))
         return Integral(volume, sides + float(areas[0] + areas[-1]))
 
 
-def _sides(height: FloatArray, section: IntArray, perimeters: FloatArray) -> float:
+def _sides(height: FloatArray, loops: LoopMeasures, own: BoolArray) -> float:
     """Return the sides' area of frustums between the loops of one kind, outlines or holes."""
-    m = len(height) + 1
-    counts = np.bincount(section, minlength=m)
-    total = np.bincount(section, perimeters, minlength=m)
-    p, q = total[:-1], total[1:]
-    alike = (counts[:-1] == counts[1:]) & (counts[1:] > 0)
-    lean = np.where(alike, (p - q) / (2.0 * np.pi * np.maximum(counts[1:], 1)), 0.0)
-    return float((0.5 * (p + q) * np.hypot(height, lean)).sum())
+    total = 0.0
+    for k, h in enumerate(height):
+        below, above = (np.flatnonzero(own & (loops.section == section)) for section in (k, k + 1))
+        p, q = loops.perimeters[below], loops.perimeters[above]
+        if len(below) != len(above):
+            total += 0.5 * h * float(p.sum() + q.sum())
+            continue
+        apart = np.linalg.norm(loops.centroids[below, None] - loops.centroids[above], axis=2)
+        i, j = linear_sum_assignment(apart)
+        total += 0.5 * float(((p[i] + q[j]) * np.hypot(h, (p[i] - q[j]) / (2.0 * np.pi))).sum())
+    return total

@@ -25,7 +25,7 @@ from stackloft.model.segmentation import Segmentation
 from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tri_mesh import TriMesh
 from stackloft.testing.conformance.tet_ellipsoid import tet_ellipsoid
-from stackloft.testing.conformance.voxel_ellipsoid import scan
+from stackloft.testing.conformance.voxel_ellipsoid import PLACES, scan
 
 A, B = 14.0, 8.0
 """Semi-axes, mm."""
@@ -110,6 +110,15 @@ def tri_mesh(fineness: int) -> TriMesh:
 def segmentation(fineness: int) -> Segmentation:
     """Return a scan of about ``8·fineness`` slabs whose grey levels are coverage."""
     return scan((A, B, B), CENTRE, fineness)
+
+
+def segmentations(fineness: int) -> list[Segmentation]:
+    """Return the same scan at several places among the voxels.
+
+    What counts voxels errs by chance of where the body lies among them, with either sign, so that one
+    place says nothing about whether a finer scan errs less.
+    """
+    return [scan((A, B, B), CENTRE, fineness, place) for place in range(len(PLACES))]
 
 
 def tet_mesh(fineness: int) -> TetMesh:

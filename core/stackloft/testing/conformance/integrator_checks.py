@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,43 +19,27 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.contour_stack import ContourStack
+from stackloft.model.errors import StackloftError
 from stackloft.model.lofted_solid import LoftedSolid
 from stackloft.model.measurement import Integral
 from stackloft.model.segmentation import Segmentation
-from stackloft.registry.options_model import validate
 from stackloft.testing.conformance import ellipsoids
+from stackloft.testing.conformance.adding import must_add_up
 from stackloft.testing.conformance.check import Check, must, must_refuse, suite
 from stackloft.testing.conformance.comparing import must_be_same
-from stackloft.testing.conformance.moving import emptied, opened, started_elsewhere, transformed, turned_over
+from stackloft.testing.conformance.integrator_case import IntegratorCase
+from stackloft.testing.conformance.moving import (
+    emptied,
+    inside_out,
+    opened,
+    started_elsewhere,
+    transformed,
+    turned_over,
+)
 from stackloft.testing.conformance.option_checks import check_options, check_shape
 
 FINENESS = (2, 4, 8)
 """Resolutions on which convergence is judged; each doubles the sections, patches or triangles."""
-
-
-@dataclass(frozen=True, slots=True)
-class IntegratorCase:
-    """One integrator and what may be asked of it."""
-
-    integrator: type[Any]
-    options: Mapping[str, Any] = field(default_factory=dict)
-    exactness: float = 1e-9
-    """Relative change allowed where nothing should change."""
-    volume_tolerance: float = 0.01
-    """Relative error allowed at the finest resolution."""
-    area_tolerance: float = 0.02
-
-    def integrate(self, product: Any) -> Integral:
-        """Return the figures of `product`."""
-        values = validate(self.integrator, self.options, self.integrator.__name__)
-        integral: Integral = self.integrator(**values).integrate(product)
-        return integral
-
-    def bodies(self, fineness: int = 2) -> list[Any]:
-        """Return the ellipsoid as each product type that the integrator accepts and the kit can make."""
-        fitting = [make for kind, make in ellipsoids.MAKERS.items() if kind in self.integrator.accepts]
-        must(fitting, f"the kit has no body of a type in {self.integrator.accepts}")
-        return [make(fineness) for make in fitting]
 
 
 def shape(case: IntegratorCase) -> None:
@@ -129,6 +113,28 @@ def direction(case: IntegratorCase) -> None:
             _must_scale(case, body, turned_over(body), 1.0, "running the loops the other way")
 
 
+def orientation(case: IntegratorCase) -> None:
+    """Check that a body turned inside out is refused or has the same figures: never negative ones."""
+    for body in case.bodies():
+        if isinstance(body, (ContourStack, Segmentation)):
+            continue  # loops count either way round (`direction`), voxels have no inside out
+        try:
+            found = case.integrate(inside_out(body))
+        except StackloftError:
+            continue
+        told = f"a {type(body).__name__} turned inside out has"
+        for name in ("volume", "area"):
+            before, after = getattr(case.integrate(body), name), getattr(found, name)
+            same = before is None or math.isclose(after, before, rel_tol=case.exactness)
+            must(same, f"{told} {name} {after}, not {before}")
+
+
+def additivity(case: IntegratorCase) -> None:
+    """Check that two bodies in one product have the sum of their figures, or are refused."""
+    for body in case.bodies():
+        must_add_up(body, case.figures, case.exactness)
+
+
 def refusals(case: IntegratorCase) -> None:
     """Check that a body of nothing, and a stack of one section, are refused."""
     for body in case.bodies():
@@ -149,21 +155,29 @@ def open_bodies(case: IntegratorCase) -> None:
 
 
 def convergence(case: IntegratorCase) -> None:
-    """Check that figures approach the exact ones as sections, patches or triangles get finer."""
+    """Check that figures approach the exact ones as sections, patches, triangles or voxels get finer.
+
+    A scan is integrated at several places among its voxels, and the root mean square error must fall:
+    at one place alone the error is a matter of chance, and may be near 0 on a coarse scan.
+    """
     for kind in [type(body) for body in case.bodies()]:
-        runs = [case.integrate(ellipsoids.MAKERS[kind](fineness)) for fineness in FINENESS]
+        runs = [[case.integrate(body) for body in _cases(kind, fineness)] for fineness in FINENESS]
         for name, exact, tolerance in (
             ("volume", ellipsoids.VOLUME, case.volume_tolerance),
             ("area", ellipsoids.AREA, case.area_tolerance),
         ):
-            values = [getattr(run, name) for run in runs]
-            if None in values:
+            values = [[getattr(integral, name) for integral in run] for run in runs]
+            if any(None in run for run in values):
                 continue
-            errors = [abs(value / exact - 1) for value in values]
+            errors = [math.hypot(*(v / exact - 1 for v in run)) / math.sqrt(len(run)) for run in values]
             told = f"{name} from {kind.__name__} errs by {', '.join(f'{error:.2e}' for error in errors)}"
             must(errors[-1] <= tolerance, f"{told}: more than {tolerance:g} at the finest")
             finer = all(b <= max(a, case.exactness) for a, b in pairwise(errors))
             must(finer, f"{told}: not less as the body gets finer")
+
+
+def _cases(kind: type, fineness: int) -> list[Any]:
+    return ellipsoids.segmentations(fineness) if kind is Segmentation else [ellipsoids.MAKERS[kind](fineness)]
 
 
 def _must_scale(case: IntegratorCase, body: Any, other: Any, s: float, what: str) -> None:
@@ -196,6 +210,8 @@ CHECKS = {
     "mirror": mirror,
     "start-point": start_point,
     "direction": direction,
+    "orientation": orientation,
+    "additivity": additivity,
     "refuses-empty": refusals,
     "refuses-open": open_bodies,
     "convergence": convergence,

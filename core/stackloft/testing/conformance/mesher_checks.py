@@ -24,6 +24,7 @@ from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tet_mesh_check import check_tet_mesh
 from stackloft.registry.options_model import validate
 from stackloft.testing.conformance import ellipsoids
+from stackloft.testing.conformance.adding import must_add_up
 from stackloft.testing.conformance.check import Check, NonconformingError, must, must_refuse, suite
 from stackloft.testing.conformance.comparing import must_be_frozen, must_be_same
 from stackloft.testing.conformance.moving import emptied, opened, started_elsewhere, transformed
@@ -179,6 +180,12 @@ def start_point(case: MesherCase) -> None:
             _must_agree(case, case.figures(body), other, 1.0, f"starting {steps} later")
 
 
+def additivity(case: MesherCase) -> None:
+    """Check that two bodies in one product have the sum of their figures, or are refused."""
+    for body in case.bodies():
+        must_add_up(body, lambda product: case.figures(product)[:2], case.steadiness)
+
+
 def refusals(case: MesherCase) -> None:
     """Check that a body of nothing is refused."""
     for body in case.bodies():
@@ -218,6 +225,7 @@ CHECKS = {
     "scaling": scaling,
     "mirror": mirror,
     "start-point": start_point,
+    "additivity": additivity,
     "refuses-empty": refusals,
     "refuses-open": open_bodies,
 }

@@ -157,6 +157,17 @@ def turned_over(stack: ContourStack) -> ContourStack:
     return replace(stack, sections=sections)
 
 
+def inside_out(product: Any) -> Any:
+    """Return a solid, surface or mesh with its outside inside."""
+    if isinstance(product, LoftedSolid):
+        shells = tuple(replace(x, patches=frozen_floats(x.patches[:, ::-1, :, ::-1])) for x in product.shells)
+        return replace(product, shells=shells)
+    if isinstance(product, TetMesh):
+        elements, faces = product.elements[:, MIRROR_TET], product.faces[:, MIRROR_TRIANGLE]
+        return replace(product, elements=frozen_ints(elements), faces=frozen_ints(faces))
+    return replace(product, faces=frozen_ints(product.faces[:, ::-1]))
+
+
 def emptied(product: Any) -> Any:
     """Return the product with nothing in it."""
     if isinstance(product, ContourStack):

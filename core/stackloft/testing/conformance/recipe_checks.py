@@ -9,6 +9,7 @@ from typing import Any
 
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.segmentation import Segmentation
+from stackloft.model.tri_mesh import TriMesh
 from stackloft.registry.find import find
 from stackloft.registry.loading import Loaded
 from stackloft.registry.member_checks import RUN
@@ -59,7 +60,7 @@ def options(case: RecipeCase) -> None:
 def measures(case: RecipeCase) -> None:
     """Check that the kit's ellipsoid gets its volume (and area, when the method has one)."""
     steps = case.steps()
-    kinds = [kind for kind in (Segmentation, ContourStack) if kind in steps[0].plugin.accepts]
+    kinds = [kind for kind in (Segmentation, ContourStack, TriMesh) if kind in steps[0].plugin.accepts]
     must(kinds, f"it starts from {steps[0].plugin.accepts}, which no run comes to")
     product = ellipsoids.MAKERS[kinds[0]](3)
     for step in steps:

@@ -10,81 +10,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from stackloft.geometry.closed_mesh import mesh_integrals, unmatched_edges
-from stackloft.model.arrays import FloatArray, frozen_floats
+from stackloft.model.arrays import frozen_floats
 from stackloft.model.contour_stack import ContourStack
-from stackloft.model.lofted_solid import LoftedSolid
+from stackloft.model.errors import StackloftError
 from stackloft.model.tri_mesh import TriMesh
-from stackloft.registry.options_model import validate
 from stackloft.testing.conformance import ellipsoids
+from stackloft.testing.conformance.adding import must_add_up
 from stackloft.testing.conformance.check import Check, must, must_refuse, suite
 from stackloft.testing.conformance.comparing import must_be_same
-from stackloft.testing.conformance.moving import emptied, started_elsewhere, transformed, turned_over
+from stackloft.testing.conformance.moving import emptied, opened, started_elsewhere, transformed, turned_over
 from stackloft.testing.conformance.option_checks import check_options, check_shape
+from stackloft.testing.conformance.reconstructor_case import ReconstructorCase, mesh_of
 
 FINENESS = (1, 2, 3)
 """Resolutions on which convergence is judged."""
 _TURN = 0.7
-
-
-@dataclass(frozen=True, slots=True)
-class ReconstructorCase:
-    """One reconstructor and what may be asked of it."""
-
-    reconstructor: type[Any]
-    options: Mapping[str, Any] = field(default_factory=dict)
-    steadiness: float = 1e-3
-    """Relative change of volume and area allowed where nothing should change."""
-    volume_tolerance: float = 0.03
-    """Relative error allowed at the finest resolution."""
-    area_tolerance: float = 0.06
-    settled: float = 0.01
-    """Relative error below which a finer body need not do better."""
-    place_tolerance: float = 0.1
-    """mm by which the body's centre may be off; its axes are 14, 8, 8 mm."""
-
-    def reconstruct(self, product: Any) -> Any:
-        """Return the solid or surface."""
-        values = validate(self.reconstructor, self.options, self.reconstructor.__name__)
-        return self.reconstructor(**values).reconstruct(product)
-
-    def figures(self, product: Any) -> tuple[float, float, FloatArray]:
-        """Return volume, area and centre of what is made of `product`."""
-        return figures_of(self.reconstruct(product))
-
-    def bodies(self, fineness: int = 1) -> list[Any]:
-        """Return the ellipsoid as each product type that is accepted and that the kit can make."""
-        fitting = [make for kind, make in ellipsoids.MAKERS.items() if kind in self.reconstructor.accepts]
-        must(fitting, f"the kit has no body of a type in {self.reconstructor.accepts}")
-        return [make(fineness) for make in fitting]
-
-
-def mesh_of(solid: Any) -> TriMesh:
-    """Return a solid or surface as triangles in bench millimetres."""
-    known = isinstance(solid, (LoftedSolid, TriMesh))
-    must(known, f"{type(solid).__name__} is returned, not a LoftedSolid or TriMesh")
-    if isinstance(solid, TriMesh):
-        return solid
-    points = np.concatenate([shell.patches.reshape(-1, 3) for shell in solid.shells])
-    mesh: TriMesh = solid.tessellate(5e-4 * float(np.ptp(points, axis=0).max()))
-    return mesh
-
-
-def figures_of(solid: Any) -> tuple[float, float, FloatArray]:
-    """Return volume, area and the volume's centre of a closed solid or surface."""
-    mesh = mesh_of(solid)
-    volume, area = mesh_integrals(mesh.vertices, mesh.faces)
-    middle = mesh.vertices.mean(axis=0)
-    a, b, c = (mesh.vertices[mesh.faces[:, k]] - middle for k in range(3))
-    parts = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
-    centre = middle + ((a + b + c) / 4.0 * parts[:, None]).sum(axis=0) / parts.sum()
-    return volume, area, np.asarray(centre)
 
 
 def shape(case: ReconstructorCase) -> None:
@@ -195,6 +142,12 @@ def direction(case: ReconstructorCase) -> None:
             _must_scale(case, body, turned_over(body), 1.0, "running the loops the other way")
 
 
+def additivity(case: ReconstructorCase) -> None:
+    """Check that two bodies in one product have the sum of their figures, or are refused."""
+    for body in case.bodies():
+        must_add_up(body, lambda product: case.figures(product)[:2], case.steadiness)
+
+
 def refusals(case: ReconstructorCase) -> None:
     """Check that a body of nothing, and a stack of one section, are refused."""
     for body in case.bodies():
@@ -203,6 +156,20 @@ def refusals(case: ReconstructorCase) -> None:
         if isinstance(body, ContourStack):
             one = replace(body, sections=body.sections[:1])
             must_refuse(lambda one=one: case.reconstruct(one), "a stack of one section")  # type: ignore[misc]
+
+
+def open_surfaces(case: ReconstructorCase) -> None:
+    """Check that a surface with a triangle missing is refused or closed, not handed on."""
+    for body in case.bodies():
+        if not isinstance(body, TriMesh):
+            continue  # loops and voxels are closed by what they are
+        what, gap = opened(body)
+        try:
+            made = case.reconstruct(gap)
+        except StackloftError:
+            continue
+        loose = unmatched_edges(mesh_of(made).faces)
+        must(loose == 0, f"what is made of {what} has {loose} open edges")
 
 
 def _must_scale(case: ReconstructorCase, body: Any, other: Any, s: float, what: str) -> None:
@@ -226,7 +193,9 @@ CHECKS = {
     "mirror": mirror,
     "start-point": start_point,
     "direction": direction,
+    "additivity": additivity,
     "refuses-empty": refusals,
+    "open": open_surfaces,
 }
 
 

@@ -24,12 +24,14 @@ from stackloft.registry.glance import source_of
 from stackloft.registry.member_checks import METHODS
 from stackloft.registry.scan import catalogue
 from stackloft.testing.conformance.check import Check
-from stackloft.testing.conformance.integrator_checks import IntegratorCase, integrator_checks
+from stackloft.testing.conformance.integrator_case import IntegratorCase
+from stackloft.testing.conformance.integrator_checks import integrator_checks
 from stackloft.testing.conformance.mesher_checks import MesherCase, mesher_checks
 from stackloft.testing.conformance.reader_case import ReaderCase
 from stackloft.testing.conformance.reader_checks import reader_checks
 from stackloft.testing.conformance.recipe_checks import RecipeCase, recipe_checks
-from stackloft.testing.conformance.reconstructor_checks import ReconstructorCase, reconstructor_checks
+from stackloft.testing.conformance.reconstructor_case import ReconstructorCase
+from stackloft.testing.conformance.reconstructor_checks import reconstructor_checks
 from stackloft.testing.conformance.segmenter_checks import SegmenterCase, segmenter_checks
 from stackloft.testing.conformance.writer_checks import WriterCase, writer_checks
 
