@@ -102,20 +102,22 @@ class TubeVolume:
 
 
 def check_tubes_against_areas(
-    tubes: list[TubeVolume], z: FloatArray, areas: FloatArray, names: tuple[str, ...]
+    tubes: list[TubeVolume], courses: list[tuple[FloatArray, FloatArray]], names: tuple[str, ...]
 ) -> None:
     """Raise InputError when a branched loft and its sections' areas disagree on the volume.
 
     Parameters
     ----------
     tubes : list of TubeVolume
-    z, areas : (m,) arrays
-        Positions, mm, and areas, mm², of the sections, all loops together.
+    courses : list of pairs of (m,) arrays
+        Positions, mm, and areas, mm², of the sections: all loops together, less those that begin or end in a
+        face between the outermost sections, where the areas jump; these each by themselves, holes negative.
     names : tuple of str
     """
     volume = sum(tube.volume() for tube in tubes)
-    expected = _integral(z, areas)
-    allowed = SLACK * abs(expected) + HALVES * _half_lattices_apart(z, areas)
+    expected = sum(_integral(z, areas) for z, areas in courses)
+    apart = sum(_half_lattices_apart(z, areas) for z, areas in courses)
+    allowed = SLACK * abs(expected) + HALVES * apart
     if np.isfinite(volume) and abs(volume - expected) <= allowed:
         return
     raise InputError(

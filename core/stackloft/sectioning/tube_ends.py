@@ -23,6 +23,7 @@ from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops
 SIDES = 160
 """About how many sides a section's loop has as a polygon."""
 FACE = PlannedEnd(EndKind.FACE, 0.0, "closed over its ridge", guessed=False)
+ON_SECTION = PlannedEnd(EndKind.FACE, 0.0, "given: its outermost section is its face", guessed=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +52,18 @@ class PlannedTube:
         return self.rows[0].hole
 
 
-def planned_tube(tube: TubeOfLoops, sections: int, sides: list[Side]) -> PlannedTube:
-    """Return a tube with its ends decided; rows are added where it ends between two sections."""
+def planned_tube(
+    tube: TubeOfLoops, sections: int, sides: list[Side], *, inner_faces: bool = False
+) -> PlannedTube:
+    """Return a tube with its ends decided; rows are added where it ends between two sections.
+
+    With `inner_faces` what ends there ends in a plane face on its own outermost section.
+
+    Raises
+    ------
+    InputError
+        With `inner_faces`: a loop that one section alone shows.
+    """
     rows = list(tube.rows)
     ends = []
     for at_last in (False, True):
@@ -66,9 +77,17 @@ def planned_tube(tube: TubeOfLoops, sections: int, sides: list[Side]) -> Planned
             ends.append(TubeEnd(sides[at_last].plan(z, areas), outer=True))
         elif not np.isfinite(told):
             ends.append(TubeEnd(FACE, outer=True))
+        elif inner_faces:
+            ends.append(TubeEnd(ON_SECTION))
         else:
             rows, planned = _vanishing(rows, float(told), at_last=at_last)
             ends.append(TubeEnd(planned))
+    if len(rows) == 1 and all(end.planned is ON_SECTION for end in ends):
+        raise InputError(
+            "a loop that one section alone shows cannot end in faces on its first and last section",
+            where=rows[0].name,
+            fix="give the section at its other end too, or leave inner_ends at auto",
+        )
     return PlannedTube(tuple(rows), (ends[0], ends[1]))
 
 

@@ -66,8 +66,12 @@ def plan_tubes(
     said: tuple[End, End],
     height: float | None,
     filled: frozenset[int] = frozenset(),
+    *,
+    inner_faces: bool = False,
 ) -> TubePlan:
-    """Return a stack's tubes and how they end; `filled` as for `trace_tubes`.
+    """Return a stack's tubes and how they end.
+
+    `filled` is as for `trace_tubes`, `inner_faces` as for `planned_tube`.
 
     Raises
     ------
@@ -84,7 +88,7 @@ def plan_tubes(
     sides = [Side(contours, said, whole, at_last) for at_last in (False, True)]
     first, last = (roofs_of(levels, side) for side in sides)
     traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], filled)
-    tubes = tuple(planned_tube(tube, len(levels), sides) for tube in traced.tubes)
+    tubes = tuple(planned_tube(tube, len(levels), sides, inner_faces=inner_faces) for tube in traced.tubes)
     return TubePlan(with_openings(tubes), traced, (tuple(first.planned), tuple(last.planned)), areas)
 
 

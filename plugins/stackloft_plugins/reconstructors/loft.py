@@ -53,6 +53,13 @@ class LoftReconstructor:
         None, "how the body ends, FIRST[,LAST]: auto, face, flat:LEN, round[:LEN], point[:LEN]"
     )
     height: float | None = option(None, "the body's whole length along the axis", unit="mm", gt=0)
+    inner_ends: str = option(
+        "auto",
+        "how cavities and pieces end that begin or end between two sections: as their areas tell (auto), or"
+        " flat on their own outermost section (face), when sections lie at the very heights of their floors"
+        " and roofs",
+        choices=("auto", "face"),
+    )
 
     api: ClassVar[str] = "1"
     accepts: ClassVar[tuple[type, ...]] = (ContourStack,)
@@ -79,17 +86,22 @@ class LoftReconstructor:
                 fix="give the whole stack, not one slice",
             )
         if not is_single(product):
-            return loft_tubes(product, self.points, self._said(product), self._height(product))
+            return self._tubes(product)
         sections = equal_points(product, self.points * more_points(product))
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
         if folded_rows(patches[_inner_rows(patches, planned)]).any():
-            return loft_tubes(product, self.points, self._said(product), self._height(product))
+            return self._tubes(product)
         _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
         shell = Shell(read_only(patches), (_shell_end(planned[0]), _shell_end(planned[1])))
         notices = (*sections.notices, *guess_notices(reports))
         return LoftedSolid((shell,), reports, product.affine, notices)
+
+    def _tubes(self, contours: ContourStack) -> LoftedSolid:
+        faces = self.inner_ends == "face"
+        said, height = self._said(contours), self._height(contours)
+        return loft_tubes(contours, self.points, said, height, inner_faces=faces)
 
     def _said(self, contours: ContourStack) -> tuple[End, End]:
         if self.ends is not None:

@@ -19,7 +19,7 @@ from stackloft.model.measurement import EndReport
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas, fold_error
 from stackloft.sectioning.stack_roofs import Roof
-from stackloft.sectioning.tube_ends import FACE, PlannedTube, TubeEnd, replace_row
+from stackloft.sectioning.tube_ends import FACE, ON_SECTION, PlannedTube, TubeEnd, replace_row
 from stackloft.sectioning.tube_plan import FINER, TubePlan, more_points, plan_tubes
 from stackloft_plugins.reconstructors.end_reports import (
     end_report,
@@ -45,7 +45,12 @@ class _Skinned:
 
 
 def loft_tubes(
-    contours: ContourStack, count: int, said: tuple[End, End], height: float | None
+    contours: ContourStack,
+    count: int,
+    said: tuple[End, End],
+    height: float | None,
+    *,
+    inner_faces: bool = False,
 ) -> LoftedSolid:
     """Return the solid lofted through sections with any number of loops.
 
@@ -57,6 +62,8 @@ def loft_tubes(
     said : pair of End
     height : float, optional
         mm
+    inner_faces : bool
+        What begins or ends between two sections ends in a plane face on its own outermost section.
 
     Raises
     ------
@@ -70,7 +77,7 @@ def loft_tubes(
         )  # fmt: skip
     filled: frozenset[int] = frozenset()
     while True:
-        plan = plan_tubes(contours, said, height, filled)
+        plan = plan_tubes(contours, said, height, filled, inner_faces=inner_faces)
         skinned = [_skinned(tube, contours, count) for tube in plan.tubes]
         folds = _folds(skinned)
         if not folds:
@@ -159,7 +166,23 @@ def _check(skinned: list[_Skinned], contours: ContourStack, areas: FloatArray) -
             rows = slice(int(chosen[0]), int(chosen[-1]) + 1)
             volumes.append(TubeVolume(one.patches[rows], -1.0 if one.tube.hole else 1.0))
     names = tuple(section.name for section in contours.sections)
-    check_tubes_against_areas(volumes, z, areas, names)
+    check_tubes_against_areas(volumes, _courses(skinned, z, areas), names)
+
+
+def _courses(
+    skinned: list[_Skinned], z: FloatArray, areas: FloatArray
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the areas' courses along the axis: of tubes with told faces each its own, of all others one."""
+    rest, courses = areas.copy(), []
+    for one in skinned:
+        if not any(end.planned is ON_SECTION for end in one.tube.ends):
+            continue
+        own = [(row.section, row.loop.signed_area) for row in one.tube.rows if row.section is not None]
+        at = np.array([section for section, _ in own])
+        signed = np.array([-abs(area) if one.tube.hole else abs(area) for _, area in own])
+        rest[at] -= signed
+        courses.append((z[at], signed))
+    return [(z, rest), *courses]
 
 
 def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
