@@ -139,6 +139,27 @@ def test_a_section_that_is_not_seen_whole_from_its_middle_is_filled_by_delaunay(
     assert max(volume, area) < 2e-5
 
 
+@pytest.mark.parametrize(("order", "bound"), [(1, 1e-2), (2, 2e-5), (3, 2e-6)])
+def test_a_tube_is_carried_as_a_ring(order, bound):
+    solid = LoftReconstructor(ends="face").reconstruct(
+        phantoms.make("tube").contour_stack(sections=11, placing="faces")
+    )
+    volume, area, mesh = errors(solid, order=order)
+    assert check_tet_mesh(mesh).inverted == 0
+    assert max(volume, area) < bound
+    assert len(mesh.elements) <= 5000
+
+
+def test_a_hole_far_from_the_middle_is_met_by_delaunay():
+    hole = np.array([[2.0, 2], [2, 5], [6, 5], [6, 2]])
+    loops = (Loop(frozen_floats(L_SHAPE), np.arange(6)), Loop(frozen_floats(hole), np.arange(4), hole=True))
+    stack = ContourStack(tuple(Section(z, loops, f"z={z}") for z in (0.0, 13.0, 40.0)))
+    mesh = Sweep().mesh(LoftReconstructor(ends="face").reconstruct(stack))
+    found = Fem().integrate(mesh)
+    assert found.volume == pytest.approx((30 * 12 + 28 * 10 - 12) * 40, rel=1e-10)
+    assert found.area == pytest.approx(2 * (30 * 12 + 28 * 10 - 12) + 40 * (140 + 14), rel=1e-10)
+
+
 def test_the_wanted_size_is_kept_on_the_surface():
     solid = lofted("ellipsoid")
     for size in (8.0, 4.0, 2.0):
@@ -156,6 +177,9 @@ def test_refusals():
     ring = LoftedSolid((Shell(shell.patches[1:-1], (ShellEnd.OPENING, ShellEnd.FACE)),))
     with pytest.raises(InputError, match=r"an end of the kind opening.*fem-tetwild"):
         Sweep().mesh(ring)
+    torus = phantoms.make("torus").contour_stack(sections=11)
+    with pytest.raises(InputError, match="closes over its ridge"):
+        Sweep().mesh(LoftReconstructor().reconstruct(torus))
     with pytest.raises(InputError, match="no surface"):
         Sweep().mesh(LoftedSolid(()))
     mesh = Sweep(elements=500).mesh(solid)

@@ -59,7 +59,7 @@ def filled(section: FloatArray, growth: float) -> Disc | None:
     disc = Disc(_shrunk(section, rings, middle), triangles, len(section))
     if (signed_areas(disc.points, triangles) > 0.0).all():
         return disc
-    return _lattice_filled(section, growth)
+    return lattice_filled([section], growth)
 
 
 def ring_pattern(count: int, growth: float) -> tuple[FloatArray, IntArray]:
@@ -89,13 +89,13 @@ def ring_pattern(count: int, growth: float) -> tuple[FloatArray, IntArray]:
             for k, (n, r) in enumerate(zip(counts, radii, strict=True))]  # fmt: skip
     triangles = []
     for k in range(len(counts) - 1):
-        triangles += _stitched(rows[k][:, 1], rows[k + 1][:, 1], int(first[k]), int(first[k + 1]))
+        triangles += stitched(rows[k][:, 1], rows[k + 1][:, 1], int(first[k]), int(first[k + 1]))
     last, n = int(first[-2]), counts[-1]
     triangles += [(last + j, last + (j + 1) % n, int(first[-1])) for j in range(n)]
     return np.vstack([*rows, [[0.0, 0.0]]]), np.array(triangles)
 
 
-def _stitched(outer: FloatArray, inner: FloatArray, a: int, b: int) -> list[tuple[int, int, int]]:
+def stitched(outer: FloatArray, inner: FloatArray, a: int, b: int) -> list[tuple[int, int, int]]:
     """Return the triangles between two rings by their places along the loop, numbered from a and b."""
     n, m = len(outer), len(inner)
     start = int(np.argmin(np.abs((inner - outer[0] + 0.5) % 1.0 - 0.5)))
@@ -125,38 +125,51 @@ def _shrunk(section: FloatArray, rings: FloatArray, middle: FloatArray) -> Float
     return np.asarray(middle + rings[:, :1] * (points - middle))
 
 
-def _lattice_filled(section: FloatArray, growth: float) -> Disc | None:
-    """Return Delaunay triangles over the boundary and a lattice inside; None when they do not fit."""
-    edge = np.linalg.norm(np.roll(section, -1, axis=0) - section, axis=1)
+def lattice_filled(loops: list[FloatArray], growth: float) -> Disc | None:
+    """Return Delaunay triangles over the rims and a lattice inside; None when they do not fit.
+
+    Parameters
+    ----------
+    loops : list of (n, 2) arrays
+        The outer rim counter-clockwise, holes clockwise, mm.
+    growth : float
+        The lattice is so much coarser than the rims, where that fits.
+    """
+    rims = np.vstack(loops)
+    ends = np.vstack([np.roll(loop, -1, axis=0) for loop in loops])
+    edge = np.linalg.norm(ends - rims, axis=1)
     for spacing in (growth * edge.mean(), edge.mean(), 0.7 * edge.mean()):
-        inner = _lattice(section, spacing)
-        points = np.vstack([section, inner])
+        inner = _lattice(rims, ends, spacing)
+        points = np.vstack([rims, inner])
         cut = Delaunay(points).simplices.astype(np.int64)
         cut = np.where((signed_areas(points, cut) < 0.0)[:, None], cut[:, ::-1], cut)
-        inside = contains(section, points[cut].mean(axis=1))
+        inside = _within(rims, ends, points[cut].mean(axis=1))
         triangles = cut[inside & (signed_areas(points, cut) > 1e-9 * spacing**2)]
-        if _fits(triangles, len(section), len(points)):
-            return Disc(points, triangles, len(section))
+        if _fits(triangles, [len(loop) for loop in loops], len(points)):
+            return Disc(points, triangles, len(rims))
     return None
 
 
-def _lattice(section: FloatArray, spacing: float) -> FloatArray:
+def _lattice(rims: FloatArray, ends: FloatArray, spacing: float) -> FloatArray:
     """Return the points of a triangular lattice inside the section, clear of its boundary."""
-    low, high = section.min(axis=0), section.max(axis=0)
+    low, high = rims.min(axis=0), rims.max(axis=0)
     rows = np.arange(low[1], high[1] + spacing, spacing * np.sqrt(0.75))
     columns = np.arange(low[0], high[0] + spacing, spacing)
     grid = np.array([(x + 0.5 * spacing * (k % 2), y) for k, y in enumerate(rows) for x in columns])
-    dense = np.concatenate([section + t * (np.roll(section, -1, axis=0) - section) for t in np.arange(4) / 4])
+    dense = np.concatenate([rims + t * (ends - rims) for t in np.arange(4) / 4])
     clear = cKDTree(dense).query(grid)[0] > 0.55 * spacing
-    return np.asarray(grid[clear & contains(section, grid)])
+    return np.asarray(grid[clear & _within(rims, ends, grid)])
 
 
-def _fits(triangles: IntArray, boundary: int, count: int) -> bool:
-    """Return whether the triangles fill the polygon: Euler's number, and every edge of the boundary there."""
-    if len(triangles) != 2 * (count - boundary) + boundary - 2:
+def _fits(triangles: IntArray, rims: list[int], count: int) -> bool:
+    """Return whether the triangles fill the section: Euler's number, and every edge of the rims there."""
+    boundary = sum(rims)
+    if len(triangles) != 2 * count - boundary - 2 * (2 - len(rims)):
         return False
     own = {(int(a), int(b)) for t in triangles for a, b in zip(t, np.roll(t, -1), strict=True)}
-    return all((k, (k + 1) % boundary) in own for k in range(boundary))
+    first = np.cumsum([0, *rims])
+    sides = ((a + k, a + (k + 1) % n) for a, n in zip(first, rims, strict=False) for k in range(n))
+    return all(side in own for side in sides)
 
 
 def contains(section: FloatArray, points: FloatArray) -> BoolArray:
@@ -167,7 +180,11 @@ def contains(section: FloatArray, points: FloatArray) -> BoolArray:
     >>> contains(np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]]), np.array([[1.0, 1], [3, 1]])).tolist()
     [True, False]
     """
-    a, b = section, np.roll(section, -1, axis=0)
+    return _within(section, np.roll(section, -1, axis=0), points)
+
+
+def _within(a: FloatArray, b: FloatArray, points: FloatArray) -> BoolArray:
+    """Return which points lie inside the loops whose sides run from a to b, by the even–odd rule."""
     inside = np.zeros(len(points), dtype=bool)
     for (x0, y0), (x1, y1) in zip(a, b, strict=True):
         spans = (y0 > points[:, 1]) != (y1 > points[:, 1])

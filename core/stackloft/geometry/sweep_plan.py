@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.geometry.disc_mesh import ring_pattern
+from stackloft.geometry.ring_mesh import band_pattern
 from stackloft.geometry.tube_stations import stations
 
 FloatArray = NDArray[np.float64]
@@ -28,66 +29,75 @@ class SweepPlan:
 
     rows: FloatArray
     """(r,) along v, both ends among them"""
-    columns: FloatArray
-    """(c,) along u, 0 among them"""
+    columns: tuple[FloatArray, ...]
+    """(c,) of each tube along u, 0 among them"""
 
 
-def plan_by_size(
-    lengths: tuple[FloatArray, FloatArray],
-    sharp: tuple[BoolArray, BoolArray],
-    poles: tuple[bool, bool],
-    size: float,
-) -> SweepPlan:
-    """Return the stations that make no edge on the surface longer than `size`, diagonals included.
+@dataclass(frozen=True, slots=True, eq=False)
+class SweepLines:
+    """The lines of one tube of patches, or of two with a wall between them."""
 
-    Parameters
-    ----------
-    lengths : pair of arrays
-        Of each row and of each column, mm (`tube_lengths`).
-    sharp : pair of bool arrays
-        (rows + 1,) and (columns,) lines where the surface turns sharply.
-    poles : pair of bool
-    size : float
-        mm
-    """
+    rows: FloatArray
+    """(r,) length of each row, mm (`tube_lengths`)"""
+    columns: tuple[FloatArray, ...]
+    """(c,) length of each column of each tube, mm"""
+    sharp_rows: BoolArray
+    """(r + 1,) where a surface turns sharply"""
+    sharp_columns: tuple[BoolArray, ...]
+    """(c,) likewise"""
+    poles: tuple[bool, bool]
+    width: float = 0.0
+    """mm from tube to tube, when there are two"""
+
+    def triangles(self, columns: tuple[FloatArray, ...], growth: float) -> int:
+        """Return how many triangles a layer has."""
+        if len(columns) == 1:
+            return len(ring_pattern(len(columns[0]), growth)[1])
+        counts = len(columns[0]), len(columns[1])
+        lengths = float(self.columns[0].sum()), float(self.columns[1].sum())
+        return len(band_pattern(counts, lengths, self.width, growth).triangles)
+
+    def columns_at(self, size: float) -> tuple[FloatArray, ...]:
+        """Return the stations along u that lie no further apart than `size`, mm."""
+        return tuple(_columns(*own, size) for own in zip(self.columns, self.sharp_columns, strict=True))
+
+
+def plan_by_size(lines: SweepLines, size: float) -> SweepPlan:
+    """Return the stations that make no edge on the surface longer than `size`, mm, diagonals included."""
     side = size / np.sqrt(2.0)
-    return SweepPlan(_rows(lengths[0], sharp[0], poles, side), _columns(lengths[1], sharp[1], side))
+    return SweepPlan(_rows(lines, side), lines.columns_at(side))
 
 
-def plan_by_count(
-    lengths: tuple[FloatArray, FloatArray],
-    sharp: tuple[BoolArray, BoolArray],
-    poles: tuple[bool, bool],
-    growth: float,
-    most: int,
-) -> SweepPlan:
+def plan_by_count(lines: SweepLines, growth: float, most: int) -> SweepPlan:
     """Return the stations of the best mesh with at most `most` elements, of the coarsest when there is none.
 
     The error of a surface of order 2 goes with the fourth power of its edges, so the best has the least sum
     of the fourth powers of the longest edge along the loop and across it.
     """
     best, least = None, np.inf
+    longest = max(float(own.max()) for own in lines.columns)
     for cut in _CUTS:
-        columns = _columns(lengths[1], sharp[1], float(lengths[1].max()) / cut * (1.0 + 1e-9))
-        triangles = len(ring_pattern(len(columns), growth)[1])
-        rows = _most_rows(lengths[0], sharp[0], poles, most // triangles)
-        plan = SweepPlan(rows, columns)
-        if _elements(rows, poles, triangles) > most and best is not None:
+        columns = lines.columns_at(longest / cut * (1.0 + 1e-9))
+        triangles = lines.triangles(columns, growth)
+        rows = _most_rows(lines, most // triangles)
+        if _elements(rows, lines.poles, triangles) > most and best is not None:
             continue
-        cost = (
-            _longest(rows, lengths[0]) ** 4 + _longest(np.append(columns, len(lengths[1])), lengths[1]) ** 4
+        around = max(
+            _longest(np.append(own, len(lengths)), lengths)
+            for own, lengths in zip(columns, lines.columns, strict=True)
         )
+        cost = _longest(rows, lines.rows) ** 4 + around**4
         if cost < least:
-            best, least = plan, cost
+            best, least = SweepPlan(rows, columns), cost
     assert best is not None
     return best
 
 
-def _rows(lengths: FloatArray, sharp: BoolArray, poles: tuple[bool, bool], size: float) -> FloatArray:
-    least = np.zeros(len(lengths))
-    for end, pole in zip((0, -1), poles, strict=True):
+def _rows(lines: SweepLines, size: float) -> FloatArray:
+    least = np.zeros(len(lines.rows))
+    for end, pole in zip((0, -1), lines.poles, strict=True):
         least[end] = max(least[end], POLE_RINGS if pole else 0)
-    return stations(lengths, sharp, size, least)
+    return stations(lines.rows, lines.sharp_rows, size, least)
 
 
 def _columns(lengths: FloatArray, sharp: BoolArray, size: float) -> FloatArray:
@@ -104,14 +114,14 @@ def _elements(rows: FloatArray, poles: tuple[bool, bool], triangles: int) -> int
     return (3 * (len(rows) - 1) - 2 * sum(poles)) * triangles
 
 
-def _most_rows(lengths: FloatArray, sharp: BoolArray, poles: tuple[bool, bool], layers: float) -> FloatArray:
+def _most_rows(lines: SweepLines, layers: float) -> FloatArray:
     """Return the finest rows with at most `layers` tetrahedra over a triangle; the coarsest at worst."""
-    long, short = 2.0 * float(lengths.sum()), 0.0
+    long, short = 2.0 * float(lines.rows.sum()), 0.0
     for _ in range(_HALVINGS):
         size = 0.5 * (long + short)
-        few = _elements(_rows(lengths, sharp, poles, size), poles, 1) <= layers
+        few = _elements(_rows(lines, size), lines.poles, 1) <= layers
         long, short = (size, short) if few else (long, size)
-    return _rows(lengths, sharp, poles, long)
+    return _rows(lines, long)
 
 
 def _longest(found: FloatArray, lengths: FloatArray) -> float:

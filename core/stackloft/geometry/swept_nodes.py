@@ -39,13 +39,15 @@ class SweptNodes:
     """(b,) 0: side, 1: plane face at the first end, 2: at the last"""
 
 
-def swept_nodes(patches: FloatArray, tube: SweptTube, order: int, planes: tuple[bool, bool]) -> SweptNodes:
+def swept_nodes(
+    tubes: tuple[FloatArray, ...], tube: SweptTube, order: int, planes: tuple[bool, bool]
+) -> SweptNodes:
     """Return the tube's elements at `order`, boundary on the patches, inner nodes relaxed where needed.
 
     Parameters
     ----------
-    patches : (rows, columns, 4, 4, 3) array
-        What `tube` was swept through, mm.
+    tubes : (rows, columns, 4, 4, 3) arrays
+        What `tube` was swept through or between, mm.
     tube : SweptTube
     order : int
         1, 2 or 3.
@@ -54,12 +56,14 @@ def swept_nodes(patches: FloatArray, tube: SweptTube, order: int, planes: tuple[
     """
     high = raised(tube.elements, len(tube.vertices), order)
     faces = boundary_faces(high.elements)
-    ends = _ends(tube, faces, len(patches), planes)
+    ends = _ends(tube, faces, len(tubes[0]), planes)
     straight = high.straight(tube.vertices)
     placed = straight.copy()
-    side = np.unique(faces[ends == 0])
-    v, u = _parameters(high, side, tube.at, patches.shape[1])
-    placed[side] = tube_points(patches, v, u)
+    skin = tube.skin[faces[:, :3]].max(axis=1)  # a pole's is its tube's
+    for k, patches in enumerate(tubes):
+        side = np.unique(faces[(ends == 0) & (skin == k)])
+        v, u = _parameters(high, side, tube.at, patches.shape[1])
+        placed[side] = tube_points(patches, v, u)
     held = np.zeros(len(placed), dtype=bool)
     held[faces] = True
     return SweptNodes(relaxed(straight, placed, high.elements, held), high.elements, faces, ends)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from stackloft.geometry.disc_mesh import Disc, filled
 from stackloft.geometry.exact_surface import points_on
 from stackloft.geometry.mean_value import carried
+from stackloft.geometry.ring_mesh import ring_filled
 from stackloft.geometry.swept_tets import swept
 
 FloatArray = NDArray[np.float64]
@@ -36,21 +37,29 @@ class SweptTube:
     """(m, 4) positive"""
     at: FloatArray
     """(n, 2) parameters (v, u) in patches of each vertex on the side; NaN inside. A pole has u = NaN."""
+    skin: IntArray
+    """(n,) the tube of patches that a vertex on the side lies on; -1 inside"""
     layer: int
     """Vertices of one layer; layers come one after the other, then the poles."""
 
 
 def swept_tube(
-    patches: FloatArray, rows: FloatArray, columns: FloatArray, poles: tuple[bool, bool], growth: float
+    tubes: tuple[FloatArray, ...],
+    rows: FloatArray,
+    columns: tuple[FloatArray, ...],
+    poles: tuple[bool, bool],
+    growth: float,
 ) -> SweptTube | None:
-    """Return the tube's tetrahedra, or None when its sections cannot be filled.
+    """Return the tetrahedra in a tube, or between two, or None when its sections cannot be filled.
 
     Parameters
     ----------
-    patches : (rows, columns, 4, 4, 3) array
-        Bézier control points, mm.
-    rows, columns : (r,), (c,) arrays
-        Stations along v, both ends among them, and along u, 0 among them.
+    tubes : one or two (rows, columns, 4, 4, 3) arrays
+        Bézier control points, mm: the outer skin, then that of a hole, oriented into it.
+    rows : (r,) array
+        Stations along v, both ends among them.
+    columns : a (c,) array for each tube
+        Stations along u, 0 among them.
     poles : pair of bool
         Where the tube ends in a point; elsewhere in a plane face.
     growth : float
@@ -58,25 +67,33 @@ def swept_tube(
     """
     first, last = (int(pole) for pole in poles)
     levels = rows[first : len(rows) - last]
-    rims = tube_points(patches, np.repeat(levels, len(columns)), np.tile(columns, len(levels)))
-    rims = rims.reshape(len(levels), len(columns), 3)
+    rims = [
+        tube_points(patches, np.repeat(levels, len(own)), np.tile(own, len(levels))).reshape(
+            len(levels), len(own), 3
+        )
+        for patches, own in zip(tubes, columns, strict=True)
+    ]
     disc = _disc(rims, growth)
     if disc is None:
         return None
-    layers = carried(disc.points, disc.triangles, disc.boundary, rims)
+    layers = carried(disc.points, disc.triangles, disc.boundary, np.concatenate(rims, axis=1))
+    patches = tubes[0]
     tips = [patches[0, 0, 0, 0] if poles[0] else None, patches[-1, 0, 3, 0] if poles[1] else None]
     layers = domed(layers, disc, tips)
     vertices = np.concatenate([layers.reshape(-1, 3), *(tip[None] for tip in tips if tip is not None)])
     elements = swept(disc.triangles, len(disc.points), len(levels), poles)
     at = np.full((len(levels), len(disc.points), 2), np.nan)
-    at[:, : disc.boundary, 0], at[:, : disc.boundary, 1] = levels[:, None], columns
+    at[:, : disc.boundary, 0], at[:, : disc.boundary, 1] = levels[:, None], np.concatenate(columns)
     ends = [[rows[-k], np.nan] for k in (0, 1) if poles[k]]  # rows[0] and rows[-1]
     corners = vertices[elements]
     volumes = np.linalg.det(corners[:, 1:] - corners[:, :1])
     if volumes.sum() < 0.0:
         elements = elements[:, [0, 2, 1, 3]]
     where = np.concatenate([at.reshape(-1, 2), np.array(ends).reshape(-1, 2)])
-    return SweptTube(vertices, elements, where, len(disc.points))
+    skin = np.full(len(disc.points), -1)
+    skin[: disc.boundary] = np.repeat(np.arange(len(tubes)), [len(own) for own in columns])
+    skins = np.concatenate([np.tile(skin, len(levels)), np.zeros(len(ends), dtype=np.int64)])
+    return SweptTube(vertices, elements, where, skins, len(disc.points))
 
 
 def tube_points(patches: FloatArray, v: FloatArray, u: FloatArray) -> FloatArray:
@@ -89,9 +106,10 @@ def tube_points(patches: FloatArray, v: FloatArray, u: FloatArray) -> FloatArray
     return points_on(flat, row * columns + column, v - row, u - column)
 
 
-def _disc(rims: FloatArray, growth: float) -> Disc | None:
+def _disc(rims: list[FloatArray], growth: float) -> Disc | None:
     """Return the triangles of the largest layer, in its own plane."""
-    vectors = 0.5 * np.cross(rims, np.roll(rims, -1, axis=1)).sum(axis=1)
+    outer = rims[0]
+    vectors = 0.5 * np.cross(outer, np.roll(outer, -1, axis=1)).sum(axis=1)
     areas = np.linalg.norm(vectors, axis=1)
     largest = int(np.argmax(areas))
     normal = vectors[largest] / areas[largest]
@@ -99,7 +117,8 @@ def _disc(rims: FloatArray, growth: float) -> Disc | None:
     x = np.cross(across, normal)
     x /= np.linalg.norm(x)
     plane = np.column_stack([x, np.cross(normal, x)])
-    return filled((rims[largest] - rims[largest].mean(axis=0)) @ plane, growth)
+    flat = [(rim[largest] - outer[largest].mean(axis=0)) @ plane for rim in rims]
+    return filled(flat[0], growth) if len(flat) == 1 else ring_filled(flat[0], flat[1], growth)
 
 
 def domed(layers: FloatArray, disc: Disc, tips: list[FloatArray | None]) -> FloatArray:
