@@ -96,10 +96,10 @@ def test_crumbs_and_glare_count_on_grey_slices_as_they_do_for_contours():
     assert Voxel().integrate(labels).volume == 2 * (400 - 1 + 4)
 
 
-def test_label_maps_have_no_coverage():
-    body = voxel_body(ellipsoid_mask(AXES, np.eye(3), (1, 1, 1)), (1, 1, 1), labels=True)
-    with pytest.raises(InputError, match="no grey levels"):
-        PartialVolume().integrate(body)
+def test_a_label_maps_coverage_is_the_sum_of_its_voxels():
+    mask = ellipsoid_mask(AXES, np.eye(3), (1, 2, 3))
+    body = voxel_body(mask, (1, 2, 3), labels=True)
+    assert PartialVolume().integrate(body).volume == pytest.approx(6.0 * mask.sum(), rel=1e-12)
 
 
 def test_a_body_without_a_whole_pixel_is_refused():

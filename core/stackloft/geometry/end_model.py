@@ -82,7 +82,7 @@ class EndGuess:
     """mm, by the sharpest."""
 
 
-def guess_end(areas: FloatArray, depth: FloatArray, pitch: float) -> EndGuess:
+def guess_end(areas: FloatArray, depth: FloatArray, pitch: float, seen: float = 0.0) -> EndGuess:
     """Return the most plausible end when nobody said where the body ends.
 
     Parameters
@@ -91,6 +91,8 @@ def guess_end(areas: FloatArray, depth: FloatArray, pitch: float) -> EndGuess:
         As for `distance_to_end`.
     pitch : float
         Distance between cuts, mm: the end is never further, or it would show on one more section.
+    seen : float
+        How far beyond the outermost section the body still showed, mm: the end is beyond that.
 
     Returns
     -------
@@ -99,18 +101,19 @@ def guess_end(areas: FloatArray, depth: FloatArray, pitch: float) -> EndGuess:
         one pitch; half a pitch when the areas do not close.
     """
     roots = [distance_to_end(areas, depth, q) for q in (*SHAPES, ROUND)]
-    lengths = [float(min(root or 0.5 * pitch, pitch)) for root in roots]
+    furthest = seen + pitch
+    lengths = [float(np.clip(root or seen + 0.5 * pitch, seen, furthest)) for root in roots]
     low, high = min(lengths), max(lengths)
     tip = distance_to_end(areas, depth, TIP)
-    if tip is not None and tip <= pitch and _is_tip(areas, depth):
+    if tip is not None and seen <= tip <= furthest and _is_tip(areas, depth):
         reason = "the square root of the area runs straight to zero"
         return EndGuess(tip, True, reason, min(low, tip), tip)
     root = roots[-1]
     if root is None:
         reason = "the areas do not close, half a pitch was assumed"
-    elif root > pitch:
+    elif root > furthest:
         reason = "the areas close later than one pitch, one pitch was assumed"
-        low = min(low, 0.5 * pitch)
+        low = min(low, seen + 0.5 * pitch)
     else:
         reason = "the parabola through the last three areas reaches zero there"
     return EndGuess(lengths[-1], False, reason, low, high)

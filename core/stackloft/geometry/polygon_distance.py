@@ -1,4 +1,4 @@
-r"""Signed distance from the nodes of a plane grid to closed polygons: positive inside (even–odd).
+r"""Signed distance from a plane grid's nodes, or any points, to closed polygons: positive inside (even–odd).
 
 ::
 
@@ -40,17 +40,43 @@ def signed_distance(x: FloatArray, y: FloatArray, polygons: list[FloatArray]) ->
     >>> signed_distance(np.array([0.0, 1.0, 5.0]), np.array([0.0]), [ring]).round(2)
     array([[ 3.,  2., -2.]])
     """
-    start = np.concatenate(polygons)
-    following = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
-    previous = np.concatenate([np.roll(polygon, 1, axis=0) for polygon in polygons])
     nodes = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    nearest = cKDTree(start).query(nodes)[1]
-    distance = np.minimum(
-        _to_side(nodes, start[nearest], following[nearest]),
-        _to_side(nodes, previous[nearest], start[nearest]),
+    inside = inside_grid(x, y, *_sides(polygons))
+    return np.asarray(np.where(inside, 1.0, -1.0) * _distance(nodes, polygons).reshape(inside.shape))
+
+
+def signed_distance_at(points: FloatArray, polygons: list[FloatArray]) -> FloatArray:
+    """Return the distance of any (n, 2) points to the nearest side, mm, negative outside, (n,).
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    >>> signed_distance_at(np.array([[1.5, 1.0], [3.0, 1.0]]), [square]).tolist()
+    [0.5, -1.0]
+    """
+    start, end = _sides(polygons)
+    x, y = points[:, :1], points[:, 1:]
+    across = (start[:, 1] > y) != (end[:, 1] > y)
+    rise = np.where(end[:, 1] == start[:, 1], 1.0, end[:, 1] - start[:, 1])
+    at = start[:, 0] + (y - start[:, 1]) * (end[:, 0] - start[:, 0]) / rise
+    inside = np.count_nonzero(across & (at < x), axis=1) % 2 == 1
+    return np.asarray(np.where(inside, 1.0, -1.0) * _distance(points, polygons))
+
+
+def _sides(polygons: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return where the polygons' sides start and end, (n, 2) each."""
+    return np.concatenate(polygons), np.concatenate([np.roll(one, -1, axis=0) for one in polygons])
+
+
+def _distance(points: FloatArray, polygons: list[FloatArray]) -> FloatArray:
+    """Return the distance to the two sides at the nearest vertex."""
+    start, following = _sides(polygons)
+    previous = np.concatenate([np.roll(polygon, 1, axis=0) for polygon in polygons])
+    nearest = cKDTree(start).query(points)[1]
+    return np.minimum(
+        _to_side(points, start[nearest], following[nearest]),
+        _to_side(points, previous[nearest], start[nearest]),
     )
-    inside = inside_grid(x, y, start, following)
-    return np.asarray(np.where(inside, 1.0, -1.0) * distance.reshape(inside.shape))
 
 
 def inside_grid(x: FloatArray, y: FloatArray, start: FloatArray, end: FloatArray) -> BoolArray:

@@ -55,6 +55,8 @@ class ContourStack:
     """Pixel size in mm the loops were traced on; 0 for exact loops."""
     thickness: float | None = None
     """A slab's own thickness, mm."""
+    seen_beyond: tuple[float, float] = (0.0, 0.0)
+    """How far beyond the first and last section the body still showed, too little for a contour, mm."""
     affine: FloatArray = field(default_factory=lambda: frozen_floats(np.eye(4)))
     """(4, 4) from stack millimetres to bench millimetres."""
     scale_uncertainty: ScaleUncertainty | None = None

@@ -51,6 +51,20 @@ class SectionField:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Beyond:
+    """A slice beyond a body's ends, of which the body fills so little that it shows no contour there."""
+
+    position: float
+    """mm"""
+    pixel_area: float
+    """mm²"""
+    shown: bool
+    """Whether some pixel there is above the level."""
+    field: Callable[[], SectionField]
+    """Decodes the slice."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Segmentation:
     """What a segmenter makes of a stack; each slice is worked out when asked for."""
 
@@ -68,6 +82,12 @@ class Segmentation:
     neck: float | None = None
     """Bodies that touch are cut apart where the neck between them is narrower than this part of the thinner
     one's width; None: what hangs together is one body."""
+    noise_floor: float = 0.0
+    """Grey levels by which noise lifts the background's mean above no signal (magnitude pictures)."""
+    before: tuple[Beyond, ...] = ()
+    """Slices before the first one that the body may reach into, in order."""
+    after: tuple[Beyond, ...] = ()
+    """Slices after the last one that the body may reach into, in order."""
 
     def __len__(self) -> int:
         return len(self.stack)

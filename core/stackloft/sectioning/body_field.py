@@ -37,11 +37,10 @@ class BodyField:
         own = self.own[self.links.of_slice(index)]
         closed, closed_corner = self.voids.closed(index) if self.whole.fill_voids else (_NONE, (0, 0))
         if len(own) == 1 and own[0] and not closed.size and not self.whole.labels:
-            return _cropped(section, _window(*self.links.shape(index), section))
+            return _cropped(section, _window(self._box(index), section))
         pieces, corner = self.links.pieces(index)
         shown = np.concatenate([[False], own])[pieces]
-        left, top, width, height = cv2.boundingRect(shown.view(np.uint8))
-        window = _window((corner[0] + top, corner[1] + left), (height, width), section)
+        window = _window(self._box(index), section)
         mine = placed(shown, corner, window)
         if self.whole.labels:
             return SectionField(mine.astype(np.float64), 0.5, _corner(window), 0.5)
@@ -53,6 +52,36 @@ class BodyField:
             within = touching(placed(closed, closed_corner, window), mine)
             field = np.where(within, np.maximum(np.abs(field), np.finfo(float).tiny), field)
         return replace(part, values=field + level)
+
+    def shows(self, index: int) -> bool:
+        """Return whether the body is on slice `index` of the whole scan."""
+        return bool(self.own[self.links.of_slice(index)].any())
+
+    def _box(self, index: int) -> Box | None:
+        """Return the box around the body on a slice and on those beside it, which slabs share voxels with."""
+        near = range(max(0, index - 1), min(len(self.links), index + 2))
+        boxes = [box for box in map(self._own_box, near) if box is not None]
+        return None if not boxes else _joined(boxes)
+
+    def _own_box(self, index: int) -> Box | None:
+        own = self.own[self.links.of_slice(index)]
+        if not own.any():
+            return None
+        (row, column), (rows, columns) = self.links.shape(index)
+        if not own.all():
+            shown = np.concatenate([[False], own])[self.links.pieces(index)[0]]
+            left, top, columns, rows = cv2.boundingRect(shown.view(np.uint8))
+            row, column = row + top, column + left
+        return row, column, row + rows, column + columns
+
+
+Box = tuple[int, int, int, int]
+"""Top, left, bottom, right."""
+
+
+def _joined(boxes: list[Box]) -> Box:
+    top, left, bottom, right = zip(*boxes, strict=True)
+    return min(top), min(left), max(bottom), max(right)
 
 
 _NONE: BoolArray = np.zeros((0, 0), dtype=np.bool_)
@@ -84,12 +113,12 @@ def touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
     return np.asarray(np.isin(pieces, np.unique(pieces[voids & beside])) & voids)
 
 
-def _window(corner: Corner, shape: tuple[int, int], section: SectionField) -> tuple[slice, slice]:
-    """Return rows and columns of a body's box and a margin, within the section's own crop; all, if empty."""
+def _window(box: Box | None, section: SectionField) -> tuple[slice, slice]:
+    """Return rows and columns of a box and a margin, within the section's own crop; all, without a box."""
     window = []
     for axis in (0, 1):
         low, high = section.offset[axis], section.offset[axis] + section.values.shape[axis]
-        start, stop = (corner[axis], corner[axis] + shape[axis]) if shape[axis] else (low, high)
+        start, stop = (low, high) if box is None else (box[axis], box[axis + 2])
         window.append(slice(max(low, start - MARGIN), min(high, stop + MARGIN)))
     return window[0], window[1]
 

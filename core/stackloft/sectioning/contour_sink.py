@@ -14,6 +14,7 @@ from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.limbs import with_limbs
+from stackloft.sectioning.slab_contours import on_middle_planes
 from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
@@ -72,12 +73,15 @@ class ContourSink:
         stack = segmentation.stack
         self._sections, left_out = with_limbs(self._sections, self._perhaps)
         self._notices += left_out
+        if stack.kind is SectionKind.SLAB and not segmentation.binary:
+            self._sections = on_middle_planes(self._sections, stack)
         return ContourStack(
             sections=tuple(self._sections),
             kind=stack.kind,
             exact=False,
             resolution=float(stack.pixel_spacing.max()),
             thickness=None if stack.thickness is None else float(stack.thickness.mean()),
+            seen_beyond=_seen_beyond(segmentation),
             affine=stack.affine,
             scale_uncertainty=stack.scale_uncertainty,
             hints=stack.hints,
@@ -98,6 +102,14 @@ class ContourSink:
             message = "begin() comes first"
             raise RuntimeError(message)
         return self._segmentation
+
+
+def _seen_beyond(segmentation: Segmentation) -> tuple[float, float]:
+    """Return how far beyond the first and the last slice the body still shows, mm."""
+    z = segmentation.stack.positions
+    first = [z[0] - beyond.position for beyond in segmentation.before if beyond.shown]
+    last = [beyond.position - z[-1] for beyond in segmentation.after if beyond.shown]
+    return float(max(first, default=0.0)), float(max(last, default=0.0))
 
 
 def _placed(loop: Loop, stack: SliceStack, index: int) -> Loop:

@@ -57,6 +57,8 @@ class StackEnds:
     kind: SectionKind
     thickness: float | None
     """A slab's own thickness, mm."""
+    seen_beyond: tuple[float, float] = (0.0, 0.0)
+    """How far beyond the first and the last section the body still showed, mm."""
 
 
 def plan_ends(stack: StackEnds, said: tuple[End, End], height: float | None) -> tuple[PlannedEnd, PlannedEnd]:
@@ -93,7 +95,7 @@ def _inward(stack: StackEnds, *, at_last: bool) -> tuple[FloatArray, FloatArray]
 
 def _guess(stack: StackEnds, *, at_last: bool) -> EndGuess:
     areas, depth = _inward(stack, at_last=at_last)
-    return guess_end(areas, depth, float(depth[1]))
+    return guess_end(areas, depth, float(depth[1]), stack.seen_beyond[at_last])
 
 
 def _plan(stack: StackEnds, end: End, *, at_last: bool, height_known: bool) -> PlannedEnd:

@@ -15,6 +15,7 @@ slice). Of a label map every label is a body, however near another, and its stra
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import cv2
 import numpy as np
@@ -22,7 +23,7 @@ import numpy as np
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
-from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.segmentation import Beyond, SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed, touching
@@ -206,16 +207,35 @@ def _largest_of(volumes: FloatArray, among: BoolArray) -> int:
 
 def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[Notice, ...]) -> Segmentation:
     """Return the body of the pieces `own` alone, on the slices where it is."""
-    present = _present(whole, linked.links, own)
+    every, present = _present(whole, linked.links, own)
     first, last = present[0], present[-1]
+    body = BodyField(whole, linked.links, own, linked.voids, first)
     inner = _void_volume(whole, linked, own)
     told = void_notice(inner, float(linked.links.sizes()[own].sum()), filled=whole.fill_voids)
     kept = replace(whole.stack, decode=linked.kept)
     return Segmentation(
         cut_stack(kept, first, last + 1),
-        BodyField(whole, linked.links, own, linked.voids, first),
+        body,
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
+        noise_floor=whole.noise_floor,
+        before=_beyond(body, range(every[0] - 1, first)),
+        after=_beyond(body, range(last + 1, every[-1] + 2)),
+    )
+
+
+def _beyond(body: BodyField, numbers: range) -> tuple[Beyond, ...]:
+    """Return the slices of those numbers that the scan has; never from what was kept: it is coarse there."""
+    stack = body.whole.stack
+
+    def shown(number: int) -> SectionField:
+        return body(number - body.first, stack.decode(number))
+
+    area = stack.pixel_spacing.prod(axis=1)
+    return tuple(
+        Beyond(float(stack.positions[k]), float(area[k]), body.shows(k), partial(shown, k))
+        for k in numbers
+        if 0 <= k < len(stack)
     )
 
 
@@ -235,12 +255,12 @@ def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
     return total
 
 
-def _present(whole: Segmentation, links: LinkedPieces, own: BoolArray) -> list[int]:
-    """Return the slices from the first to the last on which the body has pixels enough for a contour."""
+def _present(whole: Segmentation, links: LinkedPieces, own: BoolArray) -> tuple[list[int], list[int]]:
+    """Return the slices on which the body has pixels, and those on which it has enough for a contour."""
     voxel = _voxel_volumes(whole.stack)
     sizes = own * links.sizes()
     pixels = np.array([sizes[at].sum() for at in map(links.of_slice, range(len(links)))]) / voxel
-    enough = np.flatnonzero(pixels >= FEWEST)
+    every, enough = np.flatnonzero(pixels), np.flatnonzero(pixels >= FEWEST)
     if len(enough) < 2:  # so small that no contour is to be had; methods that count voxels need none
-        enough = np.flatnonzero(pixels)
-    return [int(k) for k in enough]
+        enough = every
+    return every.tolist(), enough.tolist()

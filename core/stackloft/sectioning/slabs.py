@@ -54,8 +54,13 @@ def slab_sum(areas: FloatArray, stack: SliceStack) -> tuple[float, Bias]:
     InputError
         No slice has any area.
     """
+    return slab_sum_at(areas, stack.positions, stack)
+
+
+def slab_sum_at(areas: FloatArray, positions: FloatArray, stack: SliceStack) -> tuple[float, Bias]:
+    """Return the same of areas at other positions along the stack's axis, mm."""
     thickness = None if stack.thickness is None else float(stack.thickness.mean())
-    amounts = areas * slab_lengths(stack.positions, thickness)
+    amounts = areas * slab_lengths(positions, thickness)
     if not amounts.sum() > 0.0:
         raise InputError("nothing in the slices is above the level: there is no body")
     jacobian = abs(float(np.linalg.det(stack.affine[:3, :3])))

@@ -10,12 +10,15 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import make_lsq_spline
 
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.uniform_spline import fit_uniform
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import Loop
 
-KNOT_SPACING = 6.0
-"""Pixels between knots."""
+KNOT_SPACINGS = (6.0, 4.0, 3.0)
+"""Pixels between knots: the widest that keeps the loop's area."""
+AREA_KEPT = (0.1, 2e-4)
+"""Pixels² and fraction of the loop's area: the larger of the two is what smoothing may change the area by."""
 STEP = 1.5
 """Pixels between the vertices returned."""
 _DEGREE = 3
@@ -42,7 +45,7 @@ def smooth_loop(loop: Loop, pixel: float) -> Loop:
     if len(points) < 12:
         return Loop(frozen_floats(points), frozen_ints(marks), loop.hole)
     if len(marks) == 0:
-        return Loop(frozen_floats(_smooth_closed(points, pixel)), loop.corners, loop.hole)
+        return Loop(frozen_floats(_area_kept(points, pixel)), loop.corners, loop.hole)
     pieces, starts, total = [], [], 0
     following = np.append(marks[1:], marks[0] + len(points))
     for a, b in zip(marks, following, strict=True):
@@ -62,13 +65,35 @@ def _without_repeats(points: FloatArray, marks: IntArray, least: float) -> tuple
     return points[keep], np.sort(position[marks])
 
 
-def _smooth_closed(points: FloatArray, pixel: float) -> FloatArray:
+def _area_kept(points: FloatArray, pixel: float) -> FloatArray:
+    """Return a closed loop smoothed, its knots close enough that no tip of it is cut short."""
+    area = _curve_area(points)
+    least, share = AREA_KEPT
+    allowed = max(least * pixel**2, share * abs(area))
+    for spacing in KNOT_SPACINGS:
+        smooth = _smooth_closed(points, spacing * pixel, STEP * pixel)
+        if abs(_curve_area(smooth) - area) <= allowed:
+            break
+    return smooth
+
+
+def _curve_area(points: FloatArray) -> float:
+    """Return what a smooth closed curve through the points encloses: the polygon and what its chords miss.
+
+    A chord of length L cuts off κL³/12; around a curve that turns once that makes π/6 times the mean L².
+    """
+    polygon = polygon_area(points)
+    squared = float(((np.roll(points, -1, axis=0) - points) ** 2).sum(axis=1).mean())
+    return polygon + float(np.copysign(np.pi / 6.0 * squared, polygon))
+
+
+def _smooth_closed(points: FloatArray, spacing: float, step: float) -> FloatArray:
     """Return a closed loop smoothed: overlapped with itself, fitted as an open arc, cut back."""
     chord = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     around = np.concatenate([[0.0], np.cumsum(chord)])
     total = around[-1]
-    spans = max(4, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
-    count = max(16, _at_most(total / (STEP * pixel), 2 * len(points)))
+    spans = max(4, _at_most(total / spacing, len(points) // 2))
+    count = max(16, _at_most(total / step, 2 * len(points)))
     samples: FloatArray = np.arange(count) * np.float64(spans / count)
     overlap = min(_OVERLAP, spans)
     t = around[:-1] * (spans / total)
@@ -89,7 +114,7 @@ def _smooth_arc(points: FloatArray, pixel: float) -> FloatArray:
     samples = np.linspace(0.0, total, count + 1)
     if len(points) < 8:
         return np.column_stack([np.interp(samples, t, axis) for axis in points.T])
-    spans = max(1, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
+    spans = max(1, _at_most(total / (KNOT_SPACINGS[0] * pixel), len(points) // 2))
     knots = np.linspace(0.0, total, spans + 1)[1:-1]
     fitted = _fit(t, points, knots, samples, pinned=True)
     fitted[0], fitted[-1] = points[0], points[-1]

@@ -83,7 +83,7 @@ def plan_tubes(
     levels, areas = _levels(contours)
     whole = None
     if height is not None:
-        stack = StackEnds(contours.positions, areas, contours.kind, contours.thickness)
+        stack = StackEnds(contours.positions, areas, contours.kind, contours.thickness, contours.seen_beyond)
         whole = plan_ends(stack, said, height)
     sides = [Side(contours, said, whole, at_last) for at_last in (False, True)]
     first, last = (roofs_of(levels, side) for side in sides)

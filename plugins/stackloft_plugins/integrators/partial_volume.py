@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
+from stackloft.geometry.noise_floor import MEAN, MEDIAN
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.clean_field import cleaned
-from stackloft.sectioning.slabs import slab_sum
+from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
 
 Mask = NDArray[np.uint8]
@@ -34,6 +35,10 @@ _RING = 4
 """px: width of the rings beside the edge zone from which the two grey levels are taken."""
 _ENOUGH = 20
 """Pixels in a ring for its level to count."""
+_FEW = 4
+"""Likewise of the innermost pixels of a thin body."""
+_EMPTY = 2.5
+"""Times the background's lift by noise: greys below this are taken for empty pixels (3.1 σ)."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +48,10 @@ class PartialVolume:
     Assumes that grey is proportional to the filled fraction of a pixel (and of a slab, for scans) and that
     blur keeps within ``zone`` pixels of the edge; the two levels are medians of rings on either side of that
     zone, per slice for photographs, over all slices for scans. No threshold enters, so that slabs that are
-    filled to less than a half count too. Errs with a skin of another grey than the flesh below it: by the
-    skin's thickness times the relative difference. Gives no area. Across photographs (faces) it errs as
-    Cavalieri's rule does. Label maps have no grey levels and are refused.
+    filled to less than a half count too, those beyond the outermost contours among them; what noise adds to
+    empty pixels of magnitude pictures is taken off. Errs with a skin of another grey than the flesh below it:
+    by its thickness times the relative difference. Gives no area. Across photographs (faces) it errs as
+    Cavalieri's rule does. Of a label map, whose voxels are filled or not, it is the sum of voxels.
     """
 
     zone: int = option(2, "how far from the edge pixels may be partly filled", unit="px", ge=1, le=20)
@@ -64,7 +70,7 @@ class PartialVolume:
         Raises
         ------
         InputError
-            A label map; no body; a body so thin that no pixel lies wholly inside.
+            No body; a body so thin that no pixel lies wholly inside.
         """
         return streamed(product, self, Integral)
 
@@ -82,6 +88,8 @@ class _SliceSums:
     body: float
     """Field of the ring inside; NaN when there is none."""
     background: float
+    near: float
+    """Field of what is at least one pixel inside, for bodies so thin that there is no ring."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,34 +137,50 @@ class _CoverageSink:
         self._zone = zone
 
     def begin(self, segmentation: Segmentation) -> None:
-        if segmentation.binary:
-            raise InputError(
-                "a label map has no grey levels to tell partly filled voxels by", fix="use --method voxel"
-            )
         self._segmentation = segmentation
-        self._slab = segmentation.stack.kind is SectionKind.SLAB
+        stack = segmentation.stack
+        self._slab = stack.kind is SectionKind.SLAB
+        self._lift = segmentation.noise_floor
         self._before: _Seen | None = None
         self._current: _Seen | None = None
         self._sums: list[_SliceSums] = []
+        for beyond in segmentation.before:
+            self._take(self._seen(beyond.field()))
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002
-        self._take(_Seen.of(cleaned(section_field, labels=False)))
+        self._take(self._seen(section_field))
 
     def end(self) -> Integral:
+        segmentation, stack = self._segmentation, self._segmentation.stack
+        for beyond in segmentation.after:
+            self._take(self._seen(beyond.field()))
         self._take(None)
-        stack = self._segmentation.stack
-        volume, bias = slab_sum(self._covered() * stack.pixel_spacing.prod(axis=1), stack)
+        first, last = (
+            [(x.position, x.pixel_area) for x in some] for some in (segmentation.before, segmentation.after)
+        )
+        own = zip(stack.positions, stack.pixel_spacing.prod(axis=1), strict=True)
+        positions, pixels = np.array([*first, *own, *last]).T
+        volume, bias = slab_sum_at(self._covered() * pixels, positions, stack)
         return Integral(volume, None, volume_bias=bias)
 
+    def _seen(self, section: SectionField) -> _Seen:
+        return _Seen.of(section if self._segmentation.binary else cleaned(section, labels=False))
+
     def _take(self, seen: _Seen | None) -> None:
-        if self._current is not None:
+        if self._current is not None and self._segmentation.binary:
+            self._sums.append(_counted(self._current))
+        elif self._current is not None:
             beside = (self._before, seen) if self._slab else (self._current, self._current)
-            self._sums.append(_sums(self._current, beside, self._zone))
+            self._sums.append(_sums(self._current, beside, self._zone, self._lift))
         self._before, self._current = self._current, seen
 
     def _covered(self) -> FloatArray:
         """Return each slice's covered area in pixels."""
+        if self._segmentation.binary:
+            return np.array([one.inside for one in self._sums], dtype=np.float64)
         levels = np.array([(x.background, x.body) for x in self._sums])
+        if np.isnan(levels[:, 1]).all():
+            levels[:, 1] = [x.near for x in self._sums]
         if np.isnan(levels).all(axis=0).any():
             raise InputError(
                 "no pixel lies wholly inside the body, or none wholly outside: no grey level is known",
@@ -173,27 +197,37 @@ class _CoverageSink:
         return np.array(covered)
 
 
-def _sums(current: _Seen, beside: tuple[_Seen | None, _Seen | None], zone: int) -> _SliceSums:
+def _counted(current: _Seen) -> _SliceSums:
+    """Return what one slice of a label map adds: its voxels."""
+    nan = float("nan")
+    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, nan, nan, nan)
+
+
+def _sums(current: _Seen, beside: tuple[_Seen | None, _Seen | None], zone: int, lift: float) -> _SliceSums:
     """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside = cv2.erode(common, _disc(zone), borderType=cv2.BORDER_CONSTANT, borderValue=1)
+    inside, thin = (
+        cv2.erode(common, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1) for depth in (zone, 1)
+    )
     deep = cv2.erode(inside, _disc(_RING), borderType=cv2.BORDER_CONSTANT, borderValue=1)
     near = cv2.dilate(united, _disc(zone))
     wide = cv2.dilate(near, _disc(_RING))
-    edge = near > inside
+    background = _level(current.relative(wide > near)) - lift * MEDIAN / MEAN
+    edge = current.relative(near > inside)
     return _SliceSums(
         inside=int(np.count_nonzero(inside)),
-        edge=int(np.count_nonzero(edge)),
-        grey=float(current.relative(edge).sum()),
+        edge=len(edge),
+        grey=float(edge.sum()) - lift * np.count_nonzero(edge < background + _EMPTY * lift),
         body=_level(current.relative(inside > deep)),
-        background=_level(current.relative(wide > near)),
+        background=background,
+        near=_level(current.relative(thin > 0), _FEW),
     )
 
 
-def _level(values: FloatArray) -> float:
-    return float(np.median(values)) if len(values) >= _ENOUGH else float("nan")
+def _level(values: FloatArray, enough: int = _ENOUGH) -> float:
+    return float(np.median(values)) if len(values) >= enough else float("nan")
 
 
 def _disc(radius: int) -> Mask:

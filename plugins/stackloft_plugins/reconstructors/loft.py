@@ -115,7 +115,8 @@ class LoftReconstructor:
 
 
 def _stack_ends(contours: ContourStack, sections: EqualSections) -> StackEnds:
-    return StackEnds(contours.positions, sections.curves.areas, contours.kind, contours.thickness)
+    areas = sections.curves.areas
+    return StackEnds(contours.positions, areas, contours.kind, contours.thickness, contours.seen_beyond)
 
 
 def _shell_end(end: PlannedEnd) -> ShellEnd:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from stackloft.model.arrays import read_only
-from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.kept_slices import Peeked
@@ -17,7 +16,7 @@ from stackloft_plugins.segmenters.grey import grey_levels
 from stackloft_plugins.segmenters.holder import without_holder
 from stackloft_plugins.segmenters.n4_bias import bias_corrected
 from stackloft_plugins.segmenters.slab_classes import class_levels, class_window
-from stackloft_plugins.segmenters.slab_level import SAMPLED, slab_level
+from stackloft_plugins.segmenters.slab_level import SAMPLED, SlabLevel, slab_level
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 
@@ -79,26 +78,32 @@ def slab_segmentation(stack: SliceStack, rules: SlabRules) -> Segmentation:
     -480.0
     """
     peeked = Peeked(stack.decode)
-    field, told, notices = _field(replace(stack, decode=peeked.peek), rules)
+    field, told, found = _field(replace(stack, decode=peeked.peek), rules)
     stack = replace(stack, decode=peeked, provenance={**stack.provenance, "grey level": told})
-    return Segmentation(stack, _Masked(stack, field), notices=notices, fill_voids=rules.fill_voids)
+    return Segmentation(
+        stack,
+        _Masked(stack, field),
+        notices=() if found is None else found.notices,
+        fill_voids=rules.fill_voids,
+        noise_floor=0.0 if found is None else found.noise_floor,
+    )
 
 
-def _field(stack: SliceStack, rules: SlabRules) -> tuple[_Level | _Window, str, tuple[Notice, ...]]:
-    """Return the field of a picture, how its level was found, and what is to be told of that."""
+def _field(stack: SliceStack, rules: SlabRules) -> tuple[_Level | _Window, str, SlabLevel | None]:
+    """Return the field of a picture, how its level was found, and what more was found with it."""
     from_sample = f"from {min(rules.sample, len(stack))} of {len(stack)} slices"
     if rules.window is not None:
-        return _between(*rules.window, rules.channel), "window as given", ()
+        return _between(*rules.window, rules.channel), "window as given", None
     if rules.classes > 2 or rules.chosen_class is not None:
         levels = class_levels(stack, rules.channel, rules.classes, rules.sample)
         low, high = class_window(levels, rules.chosen_class)
         told = f"class {rules.chosen_class} of {rules.classes}, {low:.4g} to {high:.4g}, {from_sample}"
-        return _between(low, high, rules.channel), told, ()
+        return _between(low, high, rules.channel), told, None
     found = slab_level(stack, rules.method, rules.channel, stack.hints.background, rules.sample)
     given = rules.threshold is not None
     level = found.level if rules.threshold is None else rules.threshold
     told = f"{level:.5g}, as given" if given else f"{level:.5g}, {rules.method} {from_sample}"
-    return _Level(level, 1.0 if found.body_above else -1.0, rules.channel), told, found.notices
+    return _Level(level, 1.0 if found.body_above else -1.0, rules.channel), told, found
 
 
 def _between(low: float, high: float, channel: str) -> _Level | _Window:

@@ -9,6 +9,7 @@ r"""One grey level for a whole scan: half-way between what lies beside the bound
 A slab blurs slanting boundaries over several pixels, differently on every slice; with one level for all
 slices, half-way between the two plateaus, a voxel that is half full lies on the boundary (ISO 50 %, VDI/VDE
 2630-1.2). The bands keep away from the blur and take the median, so that what it reaches does not matter.
+Where noise lifts the background (`geometry.noise_floor`), the level is half-way between no signal and body.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from stackloft.geometry.noise_floor import MEAN, MEDIAN, noise_floor
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import SliceStack
@@ -37,6 +39,8 @@ class SlabLevel:
 
     level: float
     body_above: bool
+    noise_floor: float = 0.0
+    """Grey levels by which noise lifts the background above no signal."""
     notices: tuple[Notice, ...] = ()
 
 
@@ -95,13 +99,14 @@ def _half_way(sample: list[Grey], level: float, *, above: bool, where: str) -> S
             raise InputError("no boundary between a body and its background", where=where,
                              fix="give --set segmenter.threshold=LEVEL")  # fmt: skip
         body, air = float(np.median(inside)), float(np.median(outside))
-        level = 0.5 * (body + air)
+        floor = noise_floor(sign * outside)
+        level = 0.5 * (body + air - sign * floor * MEDIAN / MEAN)
     noise = 1.4826 * float(np.median(np.abs(outside - air)))
     step = abs(body - air)
     if step > _FAINT * noise:
-        return SlabLevel(level, above)
+        return SlabLevel(level, above, floor)
     text = f"{where}: body and background differ by {step:.3g} grey levels, noise {noise:.2g}; look there"
-    return SlabLevel(level, above, (Notice("low-contrast", text),))
+    return SlabLevel(level, above, floor, (Notice("low-contrast", text),))
 
 
 def _bands(sample: list[Grey], level: float, sign: float) -> tuple[Grey, Grey]:
