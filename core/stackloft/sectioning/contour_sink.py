@@ -16,6 +16,7 @@ from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.slab_contours import on_middle_planes
 from stackloft.sectioning.stack_hazards import stack_hazards
+from stackloft.sectioning.strays import without_strays
 from stackloft.sectioning.traced_corners import with_corners
 from stackloft.sectioning.tracing import TraceRules, trace_field
 
@@ -43,12 +44,13 @@ class ContourSink:
         self._segmentation: Segmentation | None = None
         self._sections: list[Section] = []
         self._perhaps: list[list[tuple[Loop, Notice]]] = []
+        self._at_border: list[tuple[bool, ...]] = []
         self._notices: list[Notice] = []
 
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready for the slices of `segmentation`."""
         self._segmentation = segmentation
-        self._sections, self._perhaps, self._notices = [], [], []
+        self._sections, self._perhaps, self._at_border, self._notices = [], [], [], []
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
         """Trace slice `index`.
@@ -65,6 +67,7 @@ class ContourSink:
         loops = tuple(with_corners(_placed(loop, stack, index), max(row, column)) for loop in traced.loops)
         self._sections.append(Section(float(stack.positions[index]), loops, name))
         self._perhaps.append([(_placed(loop, stack, index), notice) for loop, notice in traced.perhaps])
+        self._at_border.append(traced.at_border)
         self._notices += [*section_field.notices, *traced.notices]
 
     def end(self) -> ContourStack:
@@ -75,6 +78,8 @@ class ContourSink:
         self._notices += left_out
         if stack.kind is SectionKind.SLAB and not segmentation.binary:
             self._sections = on_middle_planes(self._sections, stack)
+        if stack.kind is not SectionKind.SLAB:
+            self._put_strays_aside()
         return ContourStack(
             sections=tuple(self._sections),
             kind=stack.kind,
@@ -88,6 +93,15 @@ class ContourSink:
             notices=(*stack.notices, *segmentation.notices, *gathered(self._notices), *self._mistakes()),
             provenance=stack.provenance,
         )
+
+    def _put_strays_aside(self) -> None:
+        """Take what one photograph alone shows out of the sections; what was said of it goes too."""
+        self._sections, notices = without_strays(self._sections, self._at_border)
+        gone = tuple(f"{one.message.partition(': ')[0]}: " for one in notices if one.code == "edge-object")
+        self._notices = [
+            one for one in self._notices if one.code != "border-contact" or not one.message.startswith(gone)
+        ]
+        self._notices += notices
 
     def _mistakes(self) -> tuple[Notice, ...]:
         """Return what the sections of photographs say of mistakes; a scanner takes its slices in order."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from stackloft.model.notices import Notice
-from stackloft.model.segmentation import SectionField
+
+SIDES = ("top", "bottom", "left", "right")
 
 
 def dropped_notice(share: float, name: str) -> Notice:
@@ -26,20 +27,12 @@ def filled_notice(share: float, unnoticed: float, name: str) -> Iterator[Notice]
         )
 
 
-def border_notice(section: SectionField, shape: tuple[int, int], name: str) -> Iterator[Notice]:
-    """Yield what to say of a body that touches the picture's edges."""
-    inside = section.above()
-    (top, left), (rows, columns) = section.offset, inside.shape
-    sides = {
-        "top": top == 0 and inside[0].any(),
-        "bottom": top + rows == shape[0] and inside[-1].any(),
-        "left": left == 0 and inside[:, 0].any(),
-        "right": left + columns == shape[1] and inside[:, -1].any(),
-    }
-    touched = [side for side, touches in sides.items() if touches]
-    if touched:
+def border_notice(touched: Iterable[str], name: str) -> Iterator[Notice]:
+    """Yield what to say of a body that touches the picture's edges, named ``top``, ``left`` and so on."""
+    sides = [side for side in SIDES if side in touched]
+    if sides:
         yield Notice(
             "border-contact",
-            f"{name}: the body touches the picture's {' and '.join(touched)} edge and is cut off there; "
+            f"{name}: the body touches the picture's {' and '.join(sides)} edge and is cut off there; "
             "photograph it whole",
         )

@@ -23,7 +23,7 @@ from stackloft.sectioning.border_chains import chain_lines
 from stackloft.sectioning.marching_squares import Crossings, closed_lines
 from stackloft.sectioning.nesting import inside_polygon
 from stackloft.sectioning.sub_pixel import REACH, crossing_points
-from stackloft.sectioning.trace_notices import border_notice, dropped_notice, filled_notice
+from stackloft.sectioning.trace_notices import SIDES, border_notice, dropped_notice, filled_notice
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,8 @@ class TracedLoops:
     notices: tuple[Notice, ...] = ()
     perhaps: tuple[tuple[Loop, Notice], ...] = ()
     """Outlines too small to be the body's by themselves, each with what is to be said when it is left out."""
+    at_border: tuple[bool, ...] = ()
+    """For each loop, whether it touches the picture's edge."""
 
 
 def trace_field(
@@ -107,11 +109,12 @@ def trace_field(
         for line in dropped
         if not _inside_any(line, kept)  # what lies in a hole that is filled is filled with it
     )
+    sides = [_sides(line, grid, shape) for line in (*kept, *real)]
     notices = (
         *filled_notice(-sum(hole.area for hole in filled) / kept[0].area, rules.unnoticed_hole, name),
-        *border_notice(section, shape, name),
+        *border_notice({side for touched in sides for side in touched}, name),
     )
-    return TracedLoops(loops, notices, perhaps)
+    return TracedLoops(loops, notices, perhaps, tuple(bool(touched) for touched in sides))
 
 
 class _Line:
@@ -216,6 +219,15 @@ def _median_within(hole: _Line, field: FloatArray) -> float:
     cv2.fillPoly(covered, [np.round(hole.rough - low).astype(np.int32)], 1)
     window = field[low[1] : high[1] + 1, low[0] : high[0] + 1]
     return float(np.median(window[(covered > 0) & (window <= 0)]))
+
+
+def _sides(line: _Line, grid: _Grid, shape: tuple[int, int]) -> list[str]:
+    """Return the picture's edges that a line runs along: it is closed between them and the last pixels."""
+    at = line.rough + np.array(grid.first[::-1])
+    (left, top), (right, bottom) = at.min(axis=0), at.max(axis=0)
+    rows, columns = shape
+    found = {"top": top < 0, "bottom": bottom > rows - 1, "left": left < 0, "right": right > columns - 1}
+    return [side for side in SIDES if found[side]]
 
 
 def _loop(line: _Line, grid: _Grid, spacing: tuple[float, float]) -> Loop:

@@ -21,13 +21,16 @@ import cv2
 import numpy as np
 
 from stackloft.contracts.options import option
-from stackloft.model.arrays import read_only
+from stackloft.model.arrays import BoolArray, read_only
 from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.alignment import HOW, laid_out
-from stackloft_plugins.segmenters.body_window import body_window, coarse_step, main_body
+from stackloft_plugins.segmenters.body_window import Mask, body_window, coarse_step, main_body
 from stackloft_plugins.segmenters.edge_level import edge_level
+from stackloft_plugins.segmenters.flat_field import Light, fit_light
+from stackloft_plugins.segmenters.glare import glare_notice, without_glare
 from stackloft_plugins.segmenters.grey import Grey, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge, inside_band, outside_band
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
@@ -35,6 +38,10 @@ from stackloft_plugins.segmenters.local_level import local_levels
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 _FRAME = 0.02  # of the shorter side
+_PLATE = 5.0
+"""Robust standard deviations of the plate's own colour."""
+_FINEST = 0.5  # L*a*b*: no plate is more even
+_BRIGHT = 60.0  # of 255
 _NO_STEP = 4.0  # standard deviations of the plate's noise
 _LEAST_STEP = 6.0  # of 255
 
@@ -102,23 +109,64 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
     coarse = _scaled(picture[::step, ::step], full)
     plate = _plate(coarse)
     apart = median_filtered(_difference(coarse, plate))
-    level = histogram_level(apart, "otsu", name) if threshold is None else threshold
+    level = _level(apart, name) if threshold is None else threshold
+    light = _light(coarse, apart > level, step, shape)
+    if light is not None:
+        coarse /= light.at(np.arange(0, shape[0], step), np.arange(0, shape[1], step), np.float32)[..., None]
+        plate = _plate(coarse)
+        apart = median_filtered(_difference(coarse, plate))
+        level = _level(apart, name) if threshold is None else threshold
     window = body_window((apart > level).astype(np.uint8), step, shape)
     if window is None:
         raise _no_body(name, f"no colour differs from the plate's by {level:.3g}")
     colours = _scaled(picture[window], full)
-    grey = _along(colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8)))
-    edge = None if grey is None else half_way_edge(grey, 0.5 * float(grey.max()))
+    if light is not None:
+        colours /= light.at(np.arange(shape[0])[window[0]], np.arange(shape[1])[window[1]], np.float32)[
+            ..., None
+        ]
+    grey, half = _along(
+        colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8))
+    )
+    edge = None if grey is None else half_way_edge(grey, half)
     if grey is None or edge is None or _is_lost(grey, edge):
         raise _no_body(name, "no boundary between two colours")
     settled = edge_level(grey, edge)
+    local = local_levels(grey, edge, settled)
+    notices: tuple[Notice, ...] = ()
+    if float(plate.sum()) > float(np.median(colours[edge.mask > 0], axis=0).sum()):  # a light plate
+        grey, share = without_glare(grey, settled if local is None else local, edge)
+        notices = glare_notice(share, name)
     return SectionField(
         values=read_only(grey.astype(np.float64)),
         level=settled,
         offset=(window[0].start, window[1].start),
         threshold=settled,
-        local_levels=local_levels(grey, edge, settled),
+        local_levels=local,
+        notices=notices,
     )
+
+
+def _level(apart: Grey, name: str) -> float:
+    """Return the difference between plate and body: Otsu's, with all that is further off counted as body.
+
+    Reflections and seeds may differ from the plate by far more than the flesh does; left as they are they
+    would be the one class, and plate and flesh the other.
+    """
+    frame = _frame(apart)
+    usual = float(np.median(frame))
+    beyond = usual + _PLATE * max(1.4826 * float(np.median(np.abs(frame - usual))), _FINEST)
+    body = main_body((apart > beyond).astype(np.uint8)) > 0
+    if not body.any():
+        return histogram_level(apart, "otsu", name)
+    return histogram_level(np.minimum(apart, np.float32(np.median(apart[body]))), "otsu", name)
+
+
+def _light(coarse: Grey, body: BoolArray, step: int, shape: tuple[int, int]) -> Light | None:
+    """Return the light over a bright plate; None where the plate is too dark, or too little seen, to tell."""
+    grey = np.asarray(255.0 * cv2.cvtColor(coarse, cv2.COLOR_RGB2GRAY), dtype=np.float32)
+    if np.median(grey[~body]) < _BRIGHT:
+        return None
+    return fit_light(grey, body.astype(np.uint8), step, shape)
 
 
 def _is_lost(grey: Grey, edge: Edge) -> bool:
@@ -134,9 +182,14 @@ def _scaled(part: Picture, full: float) -> Grey:
 
 def _plate(colours: Grey) -> Grey:
     """Return the frame's usual colour, (3)."""
-    width = max(1, round(_FRAME * min(colours.shape[:2])))
-    edges = (colours[:width], colours[-width:], colours[:, :width], colours[:, -width:])
-    return np.asarray(np.median(np.concatenate([edge.reshape(-1, 3) for edge in edges]), axis=0), np.float32)
+    return np.asarray(np.median(_frame(colours).reshape(-1, 3), axis=0), np.float32)
+
+
+def _frame(values: Grey) -> Grey:
+    """Return the picture's outermost pixels, which show plate."""
+    width = max(1, round(_FRAME * min(values.shape[:2])))
+    edges = (values[:width], values[-width:], values[:, :width], values[:, -width:])
+    return np.concatenate([edge.reshape(-1, *values.shape[2:]) for edge in edges])
 
 
 def _difference(colours: Grey, plate: Grey) -> Grey:
@@ -146,17 +199,21 @@ def _difference(colours: Grey, plate: Grey) -> Grey:
     return np.asarray(np.linalg.norm(lab - own, axis=2), dtype=np.float32)
 
 
-def _along(colours: Grey, mask: np.ndarray[Any, np.dtype[np.uint8]]) -> Grey | None:
-    """Return how far each pixel lies on the way from the plate beside the edge to the body within, 0–255."""
+def _along(colours: Grey, mask: Mask) -> tuple[Grey | None, float]:
+    """Return how far each pixel lies on the way from the plate beside the edge to the body, and half of it.
+
+    Lengths of the way are those of RGB from 0 to 255. Reflections and crumbs may lie beyond either end.
+    """
     inner, outer = inside_band(mask), outside_band(mask)
     if not inner.any() or not outer.any():
-        return None
+        return None, 0.0
     beside = np.median(colours[outer], axis=0)
     way = np.median(colours[inner], axis=0) - beside
     length = float(np.linalg.norm(way))
     if length == 0.0:
-        return None
-    return median_filtered(np.asarray(255.0 * ((colours - beside) @ (way / length)), dtype=np.float32))
+        return None, 0.0
+    grey = np.asarray(255.0 * ((colours - beside) @ (way / length)), dtype=np.float32)
+    return median_filtered(grey), 127.5 * length
 
 
 def _no_body(name: str, found: str) -> InputError:

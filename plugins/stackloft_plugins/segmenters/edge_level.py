@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from stackloft.geometry.edge_profile import EdgeFit, fit_edge
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge
 
@@ -64,23 +64,38 @@ def _tells_more(fit: EdgeFit) -> bool:
 
 def _mean_profile(grey: Grey, edge: Edge, distance: FloatArray) -> FloatArray | None:
     """Return the mean of the middle half of the grey levels at each outward distance."""
-    points, normals = _boundary(grey, edge)
+    points, normals = boundary_points(grey, edge)
     if len(points) < 40:
         return None
-    at = (points[:, None, :] + distance[None, :, None] * normals[:, None, :]).astype(np.float32)
-    rows, columns = grey.shape
-    inside = ((at >= 0) & (at <= [columns - 1, rows - 1])).all(axis=(1, 2))
+    seen, inside = seen_across(grey, points, normals, distance)
     if inside.sum() < 0.5 * len(points):
         return None
-    seen = cv2.remap(
-        grey.astype(np.float32, copy=False), at[inside, :, 0], at[inside, :, 1], cv2.INTER_LINEAR
-    )
     ordered = np.sort(seen, axis=0)
     quarter = len(ordered) // 4
     return np.asarray(ordered[quarter : len(ordered) - quarter].mean(axis=0, dtype=np.float64))
 
 
-def _boundary(grey: Grey, edge: Edge) -> tuple[FloatArray, FloatArray]:
+def seen_across(
+    grey: Grey, points: FloatArray, normals: FloatArray, distance: FloatArray
+) -> tuple[Grey, BoolArray]:
+    """Return the grey levels along the normals, and at which points these stay within the picture.
+
+    Returns
+    -------
+    seen : array (inside.sum(), len(distance))
+    inside : array (len(points)) of bool
+    """
+    at = (points[:, None, :] + distance[None, :, None] * normals[:, None, :]).astype(np.float32)
+    rows, columns = grey.shape
+    inside = np.asarray(((at >= 0) & (at <= [columns - 1, rows - 1])).all(axis=(1, 2)))
+    if not inside.any():
+        return np.empty((0, len(distance)), dtype=np.float32), inside
+    picture = grey.astype(np.float32, copy=False)
+    seen = cv2.remap(picture, at[inside, :, 0], at[inside, :, 1], cv2.INTER_LINEAR)
+    return np.asarray(seen, dtype=np.float32), inside
+
+
+def boundary_points(grey: Grey, edge: Edge) -> tuple[FloatArray, FloatArray]:
     """Return points (x, y) of the outline on the level, to a part of a pixel, and outward normals."""
     outlines, _ = cv2.findContours(edge.mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     outline = max(outlines, key=len)

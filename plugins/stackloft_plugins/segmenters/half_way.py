@@ -36,6 +36,9 @@ _ROUNDS = 8
 _NEARBY = 15  # pixels
 _SETTLED = 0.001  # of the contrast
 _STEEPEST = 0.9
+_SAME_BODY = 1.3
+"""Times the area at the first level, or by which it may shrink; beyond, the level has left the body's edge
+for juice, shadow or flesh."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,12 +94,13 @@ def half_way_edge(grey: Grey, level: float) -> Edge | None:
     if edge is None:
         return None
     last, last_off, slope = level, edge.level - level, 0.0
+    area = int(np.count_nonzero(edge.mask))
     for _ in range(_ROUNDS):
         if abs(last_off) <= _SETTLED * abs(edge.contrast):
             break
         level = last + last_off / (1.0 - slope)
         nearer = edge_at(grey, level)
-        if nearer is None:
+        if nearer is None or not area <= _SAME_BODY * np.count_nonzero(nearer.mask) <= _SAME_BODY**2 * area:
             break
         edge = nearer
         off = edge.level - level

@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import FloatArray
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge, inside_band, outside_band
+from stackloft_plugins.segmenters.stretch_levels import UNEVEN, stretch_levels
 
-UNEVEN = 0.05
-"""Of the contrast: standard deviation around the outline above which the level is made local."""
 _SPAN = 0.2
 """Of the contrast: what the outer band must span for a closer look."""
 REACH = 8.0
@@ -55,6 +54,9 @@ def local_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
     """
     if edge.span < _SPAN * edge.contrast:
         return None
+    along = stretch_levels(grey, edge, level)
+    if along is not None:
+        return along
     inner, outer = inside_band(edge.mask), outside_band(edge.mask)
     within = _sides_mean(grey, inner & _usual(grey, inner))
     beyond = _sides_mean(grey, outer & _usual(grey, outer))

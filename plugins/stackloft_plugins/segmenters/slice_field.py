@@ -16,6 +16,7 @@ from stackloft.model.slice_stack import Picture
 from stackloft_plugins.segmenters.body_window import background_of, body_window, coarse_step
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.flat_field import fit_light
+from stackloft_plugins.segmenters.glare import glare_notice, without_glare
 from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
@@ -26,7 +27,10 @@ _FAINT = 10.0
 _NO_STEP_OF_SCALE = 0.015  # likewise, as a fraction of the picture's full scale
 _FAINT_OF_SCALE = 0.10
 
-_REPAIR = "give [slice.N] threshold or mask in stack.toml, or set skip = true there"
+_REPAIR = (
+    "give [slice.N] threshold or mask in stack.toml, or set skip = true there; "
+    "where body and plate differ by colour alone, --segmenter colour"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,15 +86,19 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     grey: Grey = sign * plain if light is None else light.flattened(plain, window, sign)
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
+    local = local_levels(grey, edge, level) if rules.settles else None
     notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
     if rules.background is None and not background.sure:
         notices.append(_unsure(name))
+    if sign < 0.0:
+        grey, share = without_glare(grey, level if local is None else local, edge)
+        notices += glare_notice(share, name)
     return SectionField(
         values=read_only(grey.astype(np.float64)),
         level=level,
         offset=(window[0].start, window[1].start),
         threshold=sign * level,
-        local_levels=local_levels(grey, edge, level) if rules.settles else None,
+        local_levels=local,
         notices=tuple(notices),
     )
 
@@ -151,8 +159,9 @@ def _full_scale(picture: Picture, coarse: Grey) -> float:
 
 def _contrast_notices(grey: Grey, edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
     step, noise = edge.contrast, edge.noise
-    lost = step < _NO_STEP * noise and step < _NO_STEP * grain(grey, edge.mask)
-    if lost or step < _NO_STEP_OF_SCALE * scale:
+    if step < _FAINT * noise:  # shadow and juice beside the body are no noise
+        noise = min(noise, grain(grey, edge.mask))
+    if step < _NO_STEP * noise or step < _NO_STEP_OF_SCALE * scale:
         raise _no_body(name, f"a step of {step:.3g} grey levels at the boundary, noise {noise:.2g}")
     if step >= max(_FAINT * noise, _FAINT_OF_SCALE * scale):
         return ()

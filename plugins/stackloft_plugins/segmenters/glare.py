@@ -1,0 +1,144 @@
+r"""Reflections at the body's edge on a light plate: narrow bays in the outline, as light as the plate.
+
+::
+
+     ______            A lamp mirrored on wet flesh is as light as the plate, and where it reaches the edge
+     the
+    |    .-´  plate    outline runs around it. Such a bay is cut off from lip to lip; a crack or a gap between
+    |   ( glare        two limbs is darker than the open plate, for it lies in the body's own shade, or wider.
+    |    `-.
+    |______|
+
+A reflection within the body is a hole, which `sectioning.tracing` fills. On a dark plate both are on the
+body's side of the level and do no harm.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.notices import Notice
+from stackloft_plugins.segmenters.body_window import Mask, main_body
+from stackloft_plugins.segmenters.grey import Grey
+from stackloft_plugins.segmenters.half_way import Edge
+
+_DEEP = 2.2
+"""Way around a bay by the width of its mouth: 3 for a square one."""
+_WIDEST = (0.04, 14.0)
+"""Of the outline's length, and pixels: a mouth wider than both is no reflection's."""
+_LARGEST = 0.03
+"""Of the body's area: a larger bay is none."""
+_SMALLEST = 5.0
+"""Square pixels, likewise."""
+_AS_LIGHT = 0.2
+"""Of the step: a bay's lightest pixels are no further below the open plate's level."""
+_TOLD = 0.002
+"""Of the body's area."""
+_SOFT = 0.7
+"""Pixels: standard deviation of the edge that is put across a mouth."""
+
+
+def without_glare(grey: Grey, level: float | FloatArray, edge: Edge) -> tuple[Grey, float]:
+    """Return the grey levels with the bays that reflections cut into the body filled, and their share of it.
+
+    Parameters
+    ----------
+    grey : ndarray, (rows, columns)
+        Body above background, on a light plate: lighter pixels are lower.
+    level : float or ndarray
+        Of the boundary.
+    edge : Edge
+        What the bands beside the boundary say.
+
+    Examples
+    --------
+    >>> from stackloft_plugins.segmenters.half_way import half_way_edge
+    >>> grey = np.full((60, 60), -200, dtype=np.float32)
+    >>> grey[10:50, 10:50] = -100
+    >>> grey[25:30, 44:50] = -210                                  # a lamp on the right edge
+    >>> filled, share = without_glare(grey, -150.0, half_way_edge(grey, -150.0))
+    >>> int((filled > -150).sum()), int((grey > -150).sum()), round(share, 3)
+    (1600, 1570, 0.019)
+    """
+    step = edge.contrast
+    mask = edge.mask if isinstance(level, float) else main_body((grey > level).astype(np.uint8))
+    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    if not outlines or step <= 0.0:
+        return grey, 0.0
+    outline = max(outlines, key=len)[:, 0, :].astype(np.int64)
+    area = float(np.count_nonzero(mask))
+    bays = [bay for bay in _bays(outline) if _SMALLEST <= abs(_area(bay)) <= _LARGEST * area]
+    if not bays:
+        return grey, 0.0
+    plate = _open_plate(grey, mask)
+    light = np.zeros(mask.shape, np.uint8)
+    for bay in bays:
+        inside = np.zeros(mask.shape, np.uint8)
+        cv2.fillPoly(inside, [bay.astype(np.int32)], 1)
+        own = grey[(inside > 0) & (mask == 0)]
+        if len(own) and float(np.percentile(own, 10)) <= plate + _AS_LIGHT * step:
+            light |= inside
+    light[mask > 0] = 0
+    return _filled(grey, level, step, mask, light), float(np.count_nonzero(light)) / area
+
+
+def glare_notice(share: float, name: str) -> tuple[Notice, ...]:
+    """Return what to say of bays filled, `share` of the body's area, unless too small to notice."""
+    if share < _TOLD:
+        return ()
+    message = (
+        f"{name}: filled bays of {100 * share:.2g} % of the body's area in its outline, taken for reflections"
+        "; give a mask in stack.toml if they are the body's own"
+    )
+    return (Notice("glare-filled", message),)
+
+
+def _filled(grey: Grey, level: float | FloatArray, step: float, mask: Mask, bays: Mask) -> Grey:
+    """Return the grey levels with the body continued over the bays."""
+    if not bays.any():
+        return grey
+    body = cv2.GaussianBlur((mask | bays).astype(np.float32), (0, 0), _SOFT)
+    put = np.asarray(level + (body - 0.5) * step, dtype=np.float32)
+    near = cv2.dilate(bays, np.ones((3, 3), np.uint8)) > 0
+    return np.where(near, np.maximum(grey, put), grey)
+
+
+def _open_plate(grey: Grey, mask: Mask) -> float:
+    """Return the plate's usual level away from the body's shade, or all of it where little is seen."""
+    for near in (25, 9):
+        far = cv2.dilate(mask, np.ones((near, near), np.uint8)) == 0
+        if np.count_nonzero(far) > 100:
+            return float(np.median(grey[far]))
+    return float(np.median(grey[mask == 0]))
+
+
+def _bays(outline: IntArray) -> list[IntArray]:
+    """Return the ways around narrow, deep bays of an outline (x, y), the largest first, none twice."""
+    n = len(outline)
+    steps = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(np.concatenate([steps, steps]))])
+    twice = np.concatenate([outline, outline])
+    widest = max(_WIDEST[0] * along[n], _WIDEST[1])
+    sense = np.sign(_area(outline))
+    found: list[tuple[float, int, int]] = []
+    for lag in np.unique(np.round(np.geomspace(6, max(7, min(4 * widest, n // 3)), 24)).astype(int)):
+        mouth = np.linalg.norm(twice[lag : lag + n] - outline, axis=1)
+        way = along[lag : lag + n] - along[:n]
+        deep = (mouth <= widest) & (way >= _DEEP * np.maximum(mouth, 1.0))
+        found += [(_area(twice[k : k + lag + 1]), int(k), int(lag)) for k in np.flatnonzero(deep)]
+    taken = np.zeros(n, dtype=bool)
+    bays = []
+    for area, k, lag in sorted(found, key=lambda one: sense * one[0]):
+        own = np.arange(k, k + lag + 1) % n
+        if area * sense < 0 and not taken[own].any():
+            taken[own] = True
+            bays.append(outline[own])
+    return bays
+
+
+def _area(way: IntArray) -> float:
+    """Return the signed area that a way and the chord between its ends enclose, square pixels."""
+    x, y = way[:, 0].astype(np.float64), way[:, 1].astype(np.float64)
+    return 0.5 * float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())

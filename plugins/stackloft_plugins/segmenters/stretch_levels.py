@@ -1,0 +1,141 @@
+r"""The level at the body's edge, stretch by stretch of the outline, where the ground beside it is not even.
+
+::
+
+     ____          Bands beside a boundary that lies a little outside see other grey levels than beside one
+    /    \__       a little inside: on ground that slopes, half-way between the bands holds for many levels,
+    |      :\      and which of them is found is chance. The profile across the edge, a model of which knows
+    \______/:      the slope (`geometry.edge_positions`), tells where the edge is, and the level there.
+      stretch
+
+One level for the whole outline may run far from the edge in a shadow; therefore three times, each about the
+boundary that the last one's levels give.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from stackloft.geometry.edge_positions import edge_positions
+from stackloft.model.arrays import FloatArray, IntArray
+from stackloft_plugins.segmenters.body_window import main_body
+from stackloft_plugins.segmenters.edge_level import boundary_points, seen_across
+from stackloft_plugins.segmenters.grey import Grey
+from stackloft_plugins.segmenters.half_way import Edge
+
+UNEVEN = 0.05
+"""Of the contrast: standard deviation around the outline above which the level is made local."""
+_REACH = 6.0
+_SAMPLES = 49
+_POINTS = 20
+"""Boundary pixels in a stretch, at least."""
+_STRETCHES = (8, 60)
+_OVERLAP = 1.5
+"""Of its length: what a stretch takes from its neighbours."""
+_POOREST = 0.03
+"""Misfit, as a fraction of the step, of a profile that the model does not describe."""
+_BELIEVED = 0.6
+"""Share of the stretches that the model must describe."""
+_OTHERWISE = 0.3
+"""Of the contrast: what is so far on the wrong side of the level, further than `_CLEAR` pixels from it, is a
+reflection on the flesh or a crumb beside it."""
+_CLEAR = 2.5
+_FEWEST = 6
+"""Rows of a stretch that show neither."""
+_SLACKS = (0.5, 0.25, 0.1)
+"""Pixels by which neighbouring stretches' edges usually differ, time after time."""
+_FURTHEST = 0.35
+"""Of the usual step: no level is further from the one level."""
+_SMOOTH = 6.0
+"""Pixels: standard deviation of the window in which the levels along the outline are carried to its sides."""
+
+
+def stretch_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
+    """Return the level pixel by pixel, (rows, columns).
+
+    Returns None when one level serves, or when the outline is short, lies at the picture's border, or has
+    edges unlike the model.
+    """
+    found = np.full(grey.shape, level, dtype=np.float64)
+    for slack in _SLACKS:
+        above = np.asarray(grey - found, dtype=np.float32)
+        mask = main_body((above > 0).view(np.uint8))
+        more = _along(above, replace(edge, body=edge.contrast, background=-edge.contrast, mask=mask), slack)
+        if more is None:
+            return None
+        points, shift, step = more
+        found += _spread(grey.shape, points, shift)
+        np.clip(found, level - _FURTHEST * step, level + _FURTHEST * step, out=found)
+    column, row = _pixels(points, grey.shape)
+    return found if float(found[row, column].std()) >= UNEVEN * edge.contrast else None
+
+
+def _along(above: Grey, edge: Edge, slack: float) -> tuple[FloatArray, FloatArray, float] | None:
+    """Return points (x, y) where `above` is 0, what it is at the edge beside each, and the usual step."""
+    points, normals = boundary_points(above, edge)
+    if len(points) < _POINTS * _STRETCHES[0] // 2:
+        return None
+    across = np.linspace(-_REACH, _REACH, _SAMPLES)
+    seen, inside = seen_across(above, points, normals, across)
+    points = points[inside]
+    if len(points) < 0.5 * len(inside):
+        return None
+    count = int(np.clip(len(points) // _POINTS, *_STRETCHES))
+    stretches = [
+        _clean(stretch, across, _OTHERWISE * edge.contrast / 2) for stretch in _stretches(seen, count)
+    ]
+    profiles = np.stack([_usual(stretch) for stretch in stretches])
+    found = edge_positions(profiles, _REACH, slack)
+    good = (found.misfit < _POOREST) & (profiles[:, 0] > profiles[:, -1])
+    good &= np.array([len(stretch) >= _FEWEST for stretch in stretches])
+    if good.mean() < _BELIEVED:
+        return None
+    chosen = np.flatnonzero(good)
+    levels = np.array([np.interp(found.position[k], across, profiles[k]) for k in chosen])
+    calm = np.median([np.roll(levels, 1), levels, np.roll(levels, -1)], axis=0)
+    along = (np.arange(len(points)) + 0.5) / len(points)
+    step = float(np.median(profiles[chosen, 0] - profiles[chosen, -1]))
+    return points, np.interp(along, (chosen + 0.5) / count, calm, period=1.0), step
+
+
+def _stretches(seen: Grey, count: int) -> list[Grey]:
+    """Return the rows of each stretch of a closed outline."""
+    n = len(seen)
+    half = 0.5 * _OVERLAP * n / count
+    middles = (np.arange(count) + 0.5) * n / count
+    return [seen[np.arange(int(m - half), int(m + half)) % n] for m in middles]
+
+
+def _clean(stretch: Grey, across: FloatArray, least: float) -> Grey:
+    """Return the rows that show flesh on one side and plate on the other; too few to count where few do."""
+    flesh = (stretch[:, across < -_CLEAR] > -least).all(axis=1)
+    plate = (stretch[:, across > _CLEAR] < least).all(axis=1)
+    clean = stretch[flesh & plate]
+    return clean if len(clean) >= _FEWEST else stretch[: _FEWEST - 1]
+
+
+def _usual(stretch: Grey) -> FloatArray:
+    """Return the mean of the middle half at each distance: crumbs and reflections do not count."""
+    ordered = np.sort(stretch, axis=0)
+    quarter = len(ordered) // 4
+    return np.asarray(ordered[quarter : len(ordered) - quarter].mean(axis=0), dtype=np.float64)
+
+
+def _spread(shape: tuple[int, ...], points: FloatArray, levels: FloatArray) -> FloatArray:
+    """Return the levels at points (x, y) of the outline carried to every pixel, (rows, columns)."""
+    column, row = _pixels(points, shape)
+    usual = float(np.median(levels))
+    weight, total = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+    np.add.at(weight, (row, column), 1.0)
+    np.add.at(total, (row, column), (levels - usual).astype(np.float32))
+    near = cv2.GaussianBlur(weight, (0, 0), _SMOOTH) + np.float32(1e-6)
+    return np.asarray(usual + cv2.GaussianBlur(total, (0, 0), _SMOOTH) / near, dtype=np.float64)
+
+
+def _pixels(points: FloatArray, shape: tuple[int, ...]) -> IntArray:
+    """Return the columns and rows of the pixels that points (x, y) lie in, (2, n)."""
+    inside = np.clip(np.round(points), 0, np.array(shape[::-1]) - 1)
+    return np.asarray(inside.T, dtype=np.int64)
