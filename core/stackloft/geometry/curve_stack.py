@@ -8,6 +8,7 @@ from: the phase of the first Fourier coefficient of the curve (Kuhl & Giardina 1
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,6 +20,8 @@ from stackloft.geometry.arc_splines import WRAP, spline_tangents
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+THREADS = 2
+"""Threads that fit curves, where there are many."""
 AT_ONCE = 8_000
 """Vertices worked on at once, so that what is in between stays in the processor's cache."""
 _JOINED = ("points", "ends", "leaving", "arriving", "lengths", "starts", "centroids", "areas")
@@ -104,12 +107,16 @@ def fit_curves(loops: list[FloatArray], corners: list[IntArray]) -> CurveStack:
     counts = np.array([len(loop) for loop in loops])
     first = np.concatenate([[0], np.cumsum(counts)])
     cuts = [0, *(np.flatnonzero(np.diff(first[1:-1] // AT_ONCE)) + 1), len(loops)]
-    parts = []
-    for a, b in pairwise(cuts):
-        segments = _hermite_segments(loops[a:b], corners[a:b])
-        parts.append(_with_measures(*segments, first[a : b + 1] - first[a]))
-    if len(parts) == 1:
-        return parts[0]
+
+    def fitted(cut: tuple[int, int]) -> CurveStack:
+        some = slice(*cut)
+        own = first[cut[0] : cut[1] + 1] - first[cut[0]]
+        return _with_measures(*_hermite_segments(loops[some], corners[some]), own)
+
+    if len(cuts) == 2:
+        return fitted((0, len(loops)))
+    with ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-curves") as pool:
+        parts = list(pool.map(fitted, pairwise(cuts)))
     joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _JOINED}
     knots = [part.knots[:-1] + a for part, a in zip(parts, cuts, strict=False)]
     return CurveStack(knots=np.append(np.concatenate(knots), float(len(loops))), first=first, **joined)

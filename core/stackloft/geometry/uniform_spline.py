@@ -6,6 +6,8 @@ or more points per span the normal equations are well conditioned (de Boor 1978,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
@@ -39,8 +41,25 @@ def fit_uniform(t: FloatArray, points: FloatArray, spans: int, at: FloatArray) -
     >>> fit_uniform(t, cubic, 5, np.array([0.5, 4.9])).round(6).tolist()
     [[-0.375, 0.5], [112.749, 48.02]]
     """
-    first, weights = _basis(t, spans)
-    count = spans + _BUMPS - 1
+    return fit_uniform_all([t], points, [spans], [at])[0]
+
+
+def fit_uniform_all(
+    t: Sequence[FloatArray], points: FloatArray, spans: Sequence[int], at: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Return several splines as `fit_uniform` gives each, by one solve of all normal equations.
+
+    Parameters
+    ----------
+    t : sequence of (n_i,) arrays
+    points : (Σ n_i, d) array
+        Those of the first spline, then those of the second …
+    spans : sequence of int
+    at : sequence of (k_i,) arrays
+    """
+    sizes = np.array(spans) + _BUMPS - 1
+    offsets, count = np.cumsum(sizes) - sizes, int(sizes.sum())
+    first, weights = _basis(t, spans, offsets)
     bands = np.zeros((_BUMPS, count))
     right = np.zeros((count, points.shape[1]))
     for a in range(_BUMPS):
@@ -49,15 +68,23 @@ def fit_uniform(t: FloatArray, points: FloatArray, spans: int, at: FloatArray) -
         for axis in range(points.shape[1]):
             right[:, axis] += np.bincount(first + a, weights[a] * points[:, axis], minlength=count)
     solved = solveh_banded(bands, right, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
-    first, weights = _basis(at, spans)
-    values: FloatArray = sum(weights[a][:, None] * solved[first + a] for a in range(_BUMPS))
-    return values
+    first, weights = _basis(at, spans, offsets)
+    values: FloatArray = weights[0][:, None] * solved[first]
+    for a in range(1, _BUMPS):
+        values += weights[a][:, None] * solved[first + a]
+    return np.split(values, np.cumsum([len(wanted) for wanted in at])[:-1])
 
 
-def _basis(t: FloatArray, spans: int) -> tuple[IntArray, FloatArray]:
+def _basis(
+    each: Sequence[FloatArray], spans: Sequence[int], offsets: IntArray
+) -> tuple[IntArray, FloatArray]:
     """Return the first of the four B-splines that are not zero at each t, and their values, (4, n)."""
-    first = np.minimum(t.astype(np.int64), spans - 1)
+    counts = [len(t) for t in each]
+    t = np.concatenate(each)
+    first = np.minimum(t.astype(np.int64), np.repeat(spans, counts) - 1)
     x = t - first
     y = 1.0 - x
     weights = np.stack([y * y * y, 4.0 - 3.0 * x * x * (1.0 + y), 4.0 - 3.0 * y * y * (1.0 + x), x * x * x])
-    return first, weights / 6.0
+    weights /= 6.0
+    first += np.repeat(offsets, counts)
+    return first, weights

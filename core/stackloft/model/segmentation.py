@@ -30,6 +30,10 @@ class SectionField:
     local_levels: FloatArray | None = None
     """(rows, columns) or None: the level pixel by pixel where it varies (uneven light)."""
     notices: tuple[Notice, ...] = ()
+    outline: NDArray[np.int32] | None = None
+    """(k, 2) column, row in the slice: the body's border pixels in order around it, from the leftmost of its
+    first row, where somebody has found that the body is one piece without a hole and nowhere held together by
+    corners alone. None: not known."""
 
     def above(self) -> BoolArray:
         """Return where the body is, (rows, columns).

@@ -5,11 +5,13 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
+import time
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -22,7 +24,7 @@ RUN_MARK = "measurement.json"
 """A folder below the source with this file in it holds a run's output and is no part of the source."""
 
 
-def digest_of(source: Path) -> str:
+def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
     """Return the SHA-256 over the names (relative, sorted) and contents of the source's files.
 
     Parameters
@@ -30,6 +32,8 @@ def digest_of(source: Path) -> str:
     source : Path
         A file, a folder (with what is below it; hidden files and earlier runs' output folders left
         out), or a folder with a pattern of file names.
+    wanted : callable
+        Asked now and then; when it says no, the rest is left out, and what is returned means nothing.
 
     Raises
     ------
@@ -46,14 +50,62 @@ def digest_of(source: Path) -> str:
     """
     whole = hashlib.sha256()
     root = source if source.is_dir() else source.parent
-    for path in sorted(_files(source), key=lambda item: item.relative_to(root).as_posix()):
+    block = memoryview(bytearray(_BLOCK))
+    for name, path in sorted((item.relative_to(root).as_posix(), item) for item in _files(source)):
+        content = hashlib.sha256()
         try:
-            with path.open("rb") as stream:
-                content = hashlib.file_digest(stream, "sha256").digest()
+            with path.open("rb", buffering=0) as stream:
+                while wanted() and (size := stream.readinto(block)):
+                    content.update(block[:size])
         except OSError as error:
             raise InputError("cannot be read", where=str(path), found=error.strerror) from error
-        whole.update(path.relative_to(root).as_posix().encode() + b"\0" + content)
+        whole.update(name.encode() + b"\0" + content.digest())
     return whole.hexdigest()
+
+
+class DigestMeanwhile:
+    """Takes a source's fingerprint in a thread of its own while the run goes on.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "a.txt").write_text("one")
+    ...     with DigestMeanwhile(Path(folder)) as digest:
+    ...         digest.value() == digest_of(Path(folder))
+    True
+    """
+
+    def __init__(self, source: Path) -> None:
+        self.seconds = 0.0
+        """How long it took, once `value` has been asked for."""
+        self._given_up = False
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="stackloft-digest")
+        self._value = self._pool.submit(self._taken, source)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._given_up = True
+        self._pool.shutdown()
+
+    def value(self) -> str:
+        """Return the fingerprint when it is there.
+
+        Raises
+        ------
+        InputError
+            A file cannot be read.
+        """
+        return self._value.result()
+
+    def _taken(self, source: Path) -> str:
+        start = time.perf_counter()
+        try:
+            return digest_of(source, lambda: not self._given_up)
+        finally:
+            self.seconds = time.perf_counter() - start
 
 
 def _files(source: Path) -> Iterator[Path]:

@@ -9,7 +9,8 @@ r"""A run: read, section, reconstruct, integrate, hand over.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +25,7 @@ from stackloft.model.slice_stack import Hints, SliceStack
 from stackloft.model.tet_mesh import TetMesh, mesh_entry
 from stackloft.pipeline.agreement import disagreements
 from stackloft.pipeline.blame import guarded
-from stackloft.pipeline.digest import PictureDigest, digest_of, digest_of_value
+from stackloft.pipeline.digest import DigestMeanwhile, PictureDigest, digest_of_value
 from stackloft.pipeline.figures import derived_figures, method_row, require_volume
 from stackloft.pipeline.outcome import Outcome
 from stackloft.pipeline.plan import Method, Plan, make_plan
@@ -71,18 +72,14 @@ def measure(
     start = time.perf_counter()
     listener = progress or Silence()
     plan = make_plan(request, product)
-    reading = _read(plan, request, product, listener)
-    seen = PictureDigest()
-    bench = Workbench(
-        plan, seen.tapped(reading.product) if plan.reader is None else reading.product, listener, sinks
-    )
-    rows, measured = _run_methods(plan.methods, bench, every=request.method == ALL_METHODS)
-    sections, skipped = _sections(bench)
-    body = _measurement(rows, measured, sections, reading.product)
+    with _reading(plan, request, product, listener) as reading:
+        bench = Workbench(plan, reading.product, listener, sinks)
+        rows, measured = _run_methods(plan.methods, bench, every=request.method == ALL_METHODS)
+        sections, skipped = _sections(bench)
+        body = _measurement(rows, measured, sections, reading.product)
+        digest = reading.digest()
     products = _in_order(measured, bench)
     again = replace(plan, methods=tuple(sorted(plan.methods, key=lambda x: x.name != body.volume.method)))
-    pictured = plan.reader is None and isinstance(product, (SliceStack, Segmentation))
-    digest = seen.value(product) if pictured else reading.digest
     seconds = {**reading.seconds, **bench.stages, "total": time.perf_counter() - start}
     result = Result(
         source={"path": str(request.source), "reader": reading.name, "digest": digest},
@@ -98,7 +95,8 @@ def measure(
 class _Reading:
     product: Any
     name: str
-    digest: str
+    digest: Callable[[], str]
+    """Returns the source's fingerprint, once the run is through with it."""
     seconds: dict[str, float]
 
 
@@ -114,19 +112,34 @@ class _Measured:
     notices: tuple[Notice, ...] = ()
 
 
-def _read(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> _Reading:
+@contextmanager
+def _reading(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> Iterator[_Reading]:
+    """Give what the run starts from; the fingerprint of files is taken while it goes on."""
     if plan.reader is None:
-        return _Reading(product, "python", digest_of_value(product), {})
+        yield _in_memory(product)
+        return
     progress.begin("read", None)
     start = time.perf_counter()
     try:
         found = guarded(plan.reader.loaded, plan.reader.instance.read, request.source)
-        middle = time.perf_counter()
-        digest = digest_of(request.source)
     finally:
         progress.end()
-    seconds = {"read": middle - start, "digest": time.perf_counter() - middle}
-    return _Reading(found, plan.reader.loaded.name, digest, seconds)
+    seconds = {"read": time.perf_counter() - start}
+    with DigestMeanwhile(request.source) as meanwhile:
+
+        def digest() -> str:
+            value = meanwhile.value()
+            seconds["digest"] = meanwhile.seconds
+            return value
+
+        yield _Reading(found, plan.reader.loaded.name, digest, seconds)
+
+
+def _in_memory(product: Any) -> _Reading:
+    if not isinstance(product, (SliceStack, Segmentation)):
+        return _Reading(product, "python", lambda: digest_of_value(product), {})
+    seen = PictureDigest()
+    return _Reading(seen.tapped(product), "python", lambda: seen.value(product), {})
 
 
 def _run_methods(

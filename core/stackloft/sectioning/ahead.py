@@ -1,11 +1,11 @@
-"""Work on slices a little ahead of the one in hand, in order."""
+"""Work on slices a little ahead of the one in hand, or behind it, in order."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from typing import Any, TypeVar
 
 THREADS = 2
 """Threads that decode and segment."""
@@ -38,3 +38,59 @@ def worked_ahead(count: int, work: Callable[[int], T]) -> Iterator[T]:
             yield waiting.popleft().result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+class Behind:
+    """Work done by a thread of its own, one piece after the other, while its giver goes on.
+
+    At most one piece waits while another is worked on, so that what they hold does not pile up.
+
+    Examples
+    --------
+    >>> behind = Behind()
+    >>> for number in (1, 2, 3):
+    ...     behind.give(lambda number=number: number**2)
+    >>> behind.finished()
+    [1, 4, 9]
+    """
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="stackloft-behind")
+        self._given: deque[Future[Any]] = deque()
+        self._done: list[Any] = []
+
+    def give(self, work: Callable[[], Any]) -> None:
+        """Have a piece of work done.
+
+        Raises
+        ------
+        Exception
+            What an earlier piece raised; nothing more is worked on then.
+        """
+        while len(self._given) > 1:
+            self._take()
+        self._given.append(self._pool.submit(work))
+
+    def finished(self) -> list[Any]:
+        """Return what the pieces gave, in order, when all are done.
+
+        Raises
+        ------
+        Exception
+            What one of them raised.
+        """
+        self.settle()
+        self._pool.shutdown()
+        return self._done
+
+    def settle(self) -> None:
+        """Wait until all that was given is done; raise what a piece raised."""
+        while self._given:
+            self._take()
+
+    def _take(self) -> None:
+        try:
+            self._done.append(self._given.popleft().result())
+        except BaseException:
+            self._pool.shutdown(wait=True, cancel_futures=True)
+            raise

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from stackloft.model.arrays import BoolArray
 from stackloft.model.scale import scale_of_slices
@@ -29,6 +30,8 @@ class BodyField:
     voids: VoidFinder
     first: int
     """Number of the body's first slice in the whole scan."""
+    outlines: Mapping[int, NDArray[np.int32]]
+    """As `SectionField` has them, by number in the whole scan, where they are known."""
 
     def __call__(self, number: int, picture: Picture) -> SectionField:
         """Return the field of the body's slice `number`."""
@@ -37,7 +40,8 @@ class BodyField:
         own = self.own[self.links.of_slice(index)]
         closed, closed_corner = self.voids.closed(index) if self.whole.fill_voids else (_NONE, (0, 0))
         if len(own) == 1 and own[0] and not closed.size and not self.whole.labels:
-            return _cropped(section, _window(self._box(index), section))
+            part = _cropped(section, _window(self._box(index), section))
+            return replace(part, outline=self.outlines.get(index))
         pieces, corner = self.links.pieces(index)
         shown = np.concatenate([[False], own])[pieces]
         window = _window(self._box(index), section)

@@ -6,8 +6,8 @@ r"""Closed lines around pieces, from the chains of border pixels that OpenCV fol
     . p q .        outside, one passes q's outer neighbours; each of the four beside it is an edge that the
     . # # r        line crosses: above q, right of q
 
-The same lines as `marching_squares.closed_lines` finds, in a tenth of the time, wherever no two pieces (or
-holes) touch by their corners alone.
+The same lines as `marching_squares.closed_lines` finds, in a twentieth of the time, wherever no two pieces
+(or holes) touch by their corners alone.
 """
 
 from __future__ import annotations
@@ -18,12 +18,25 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.model.arrays import IntArray
 from stackloft.sectioning.linked_pieces import pinched
 from stackloft.sectioning.marching_squares import Crossings
 
-_DIRECTION = np.array([[5, 6, 7], [4, -1, 0], [3, 2, 1]])
-"""By 1 + dy and 1 + dx; y runs down, so that numbers run clockwise from the right."""
-_AROUND = np.arange(1, 8)
+_DIRECTION = np.array([5, 6, 7, 4, -1, 0, 3, 2, 1])
+"""By 3·(1 + dy) + 1 + dx; y runs down, so that numbers run clockwise from the right."""
+_LONE = np.array([0, 6, 4, 2])
+"""The edges around a single pixel."""
+
+
+def _passed(back: int, ahead: int) -> list[int]:
+    """Return the neighbours beside a border pixel that one passes turning from `back` to `ahead`."""
+    return [(back - turn) % 8 for turn in range(1, (back - ahead - 1) % 8 + 1) if (back - turn) % 2 == 0]
+
+
+_PASSED = [_passed(back, ahead) for back in range(8) for ahead in range(8)]
+_COUNT = np.array([len(ways) for ways in _PASSED])
+_START = np.cumsum(_COUNT) - _COUNT
+_WAYS = np.array([way for ways in _PASSED for way in ways])
 
 
 def chain_lines(bits: NDArray[np.uint8], margin: int) -> list[Crossings] | None:
@@ -52,28 +65,42 @@ def chain_lines(bits: NDArray[np.uint8], margin: int) -> list[Crossings] | None:
     outlines, tree = cv2.findContours(np.ascontiguousarray(bits), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     if tree is None or (tree[0, :, 3] >= 0).any():
         return None
-    limit = np.array(bits.shape[::-1]) - 1 - margin
-    for outline in outlines:
-        chain = outline[:, 0]
-        if chain.min() < margin or (chain.max(axis=0) > limit).any() or pinched(bits, chain):
-            return None
-    return [_crossed(outline[:, 0]) for outline in outlines]
+    chains = [outline[:, 0] for outline in outlines]
+    if any(near_border(chain, bits.shape, margin) or pinched(bits, chain) for chain in chains):
+        return None
+    return [line_around(chain) for chain in chains]
 
 
-def _crossed(chain: NDArray[Any]) -> Crossings:
-    """Return the edges between the border pixels of a chain and their outer neighbours, in order."""
+def near_border(chain: NDArray[Any], shape: tuple[int, ...], margin: int) -> bool:
+    """Return whether a chain comes within `margin` pixels of the border of a crop."""
+    x, y = chain[:, 0], chain[:, 1]
+    low, right, bottom = min(x.min(), y.min()), x.max(), y.max()
+    return bool(low < margin or right > shape[1] - 1 - margin or bottom > shape[0] - 1 - margin)
+
+
+def line_around(chain: NDArray[Any]) -> Crossings:
+    """Return the edges from a chain's border pixels, (k, 2) column and row, to their outer neighbours."""
     x, y = chain[:, 0].astype(np.int64), chain[:, 1].astype(np.int64)
     if len(chain) == 1:
-        back, count = np.array([0]), np.array([8])
+        pixel, way = np.zeros(4, dtype=np.int64), _LONE
     else:
-        ahead = _DIRECTION[1 + np.roll(y, -1) - y, 1 + np.roll(x, -1) - x]
-        back = (np.roll(ahead, 1) + 4) % 8
-        count = (back - ahead - 1) % 8
-    turns = np.arange(0, 8) if len(chain) == 1 else _AROUND
-    way = (back[:, None] - turns) % 8
-    crossed = (turns <= count[:, None]) & (way % 2 == 0)
-    pixel, _ = np.nonzero(crossed)
-    way = way[crossed]
+        pixel, way = _ways(3 * _steps(y) + _steps(x) + 4)
     row = y[pixel] - (way == 6)
     column = x[pixel] - (way == 4)
-    return Crossings(row[::-1], column[::-1], (way % 4 == 2)[::-1])
+    return Crossings(row[::-1], column[::-1], (way & 3 == 2)[::-1])
+
+
+def _ways(steps: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the chain's pixels, each as often as it is passed by, and the ways to its outer neighbours."""
+    ahead = _DIRECTION[steps]
+    back = np.concatenate([ahead[-1:], ahead[:-1]]) + 4 & 7
+    turn = 8 * back + ahead
+    count = _COUNT[turn]
+    pixel = np.repeat(np.arange(len(steps)), count)
+    before = np.cumsum(count) - count
+    return pixel, _WAYS[np.arange(len(pixel)) + (_START[turn] - before)[pixel]]
+
+
+def _steps(values: IntArray) -> IntArray:
+    """Return the difference of each value and the next one, round the chain."""
+    return np.concatenate([values[1:], values[:1]]) - values

@@ -14,7 +14,7 @@ import numpy as np
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.segmentation import SectionField
 from stackloft.sectioning.linked_pieces import pinched
-from stackloft.sectioning.tracing import TraceRules
+from stackloft.sectioning.slice_lines import TraceRules
 
 
 def cleaned(section: SectionField, *, labels: bool, rules: TraceRules | None = None) -> SectionField:
@@ -27,6 +27,8 @@ def cleaned(section: SectionField, *, labels: bool, rules: TraceRules | None = N
 
 def _is_clean(section: SectionField) -> bool:
     """Return whether the body is one piece without a hole, which most are."""
+    if section.outline is not None:
+        return True
     bits = np.ascontiguousarray(section.above()).view(np.uint8)
     outlines, _ = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     return len(outlines) == 1 and not pinched(bits, outlines[0][:, 0])

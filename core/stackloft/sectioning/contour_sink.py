@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import Any
 
 from stackloft.contracts.sink import Sink
-from stackloft.model.arrays import frozen_floats
-from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
-from stackloft.sectioning.ahead import worked_ahead
+from stackloft.model.slice_stack import Picture, SectionKind
+from stackloft.sectioning.ahead import Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
+from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.slab_contours import on_middle_planes
+from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
 from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.strays import without_strays
-from stackloft.sectioning.traced_corners import with_corners
-from stackloft.sectioning.tracing import TraceRules, trace_field
+from stackloft.sectioning.traced_slices import traced_slices
 
+TOGETHER = 8
+"""Slices traced together."""
+HELD = 4_000_000
+"""Bytes: slices whose fields take more are traced without waiting for others."""
 _NAMED = 3  # slices named in a notice that stands for several
 
 
@@ -42,46 +45,47 @@ class ContourSink:
     def __init__(self, rules: TraceRules | None = None) -> None:
         self._rules = rules or TraceRules()
         self._segmentation: Segmentation | None = None
-        self._sections: list[Section] = []
-        self._perhaps: list[list[tuple[Loop, Notice]]] = []
-        self._at_border: list[tuple[bool, ...]] = []
-        self._notices: list[Notice] = []
+        self._waiting: list[tuple[int, SliceToTrace]] = []
+        self._behind = Behind()
 
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready for the slices of `segmentation`."""
         self._segmentation = segmentation
-        self._sections, self._perhaps, self._at_border, self._notices = [], [], [], []
+        self._waiting, self._behind = [], Behind()
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
-        """Trace slice `index`.
+        """Have slice `index` traced, together with some before and after it.
 
         Raises
         ------
         InputError
-            There is no body on it.
+            There is no body on it, or on one of those before.
         """
         stack = self._begun.stack
         row, column = (float(step) for step in stack.pixel_spacing[index])
-        name = stack.names[index]
-        traced = trace_field(section_field, (row, column), stack.shape, name, self._rules)
-        loops = tuple(with_corners(_placed(loop, stack, index), max(row, column)) for loop in traced.loops)
-        self._sections.append(Section(float(stack.positions[index]), loops, name))
-        self._perhaps.append([(_placed(loop, stack, index), notice) for loop, notice in traced.perhaps])
-        self._at_border.append(traced.at_border)
-        self._notices += [*section_field.notices, *traced.notices]
+        one = SliceToTrace(section_field, (row, column), stack.shape, stack.names[index])
+        self._waiting.append((index, one))
+        held = sum(slice_.section.values.nbytes for _, slice_ in self._waiting)
+        if len(self._waiting) == TOGETHER or held > HELD:
+            self._hand_over()
+        if len(self._waiting) == 1 and index == 0:  # where the first slice shows no body, seldom another does
+            self._hand_over()
+            self._behind.settle()
 
     def end(self) -> ContourStack:
         """Return the sections, with what the stack said and what was noticed on the way."""
         segmentation = self._begun
         stack = segmentation.stack
-        self._sections, left_out = with_limbs(self._sections, self._perhaps)
-        self._notices += left_out
+        self._hand_over()
+        traced = [one for some in self._behind.finished() for one in some]
+        sections, left_out = with_limbs([one.section for one in traced], [one.perhaps for one in traced])
+        notices = [*(notice for one in traced for notice in one.notices), *left_out]
         if stack.kind is SectionKind.SLAB and not segmentation.binary:
-            self._sections = on_middle_planes(self._sections, stack)
+            sections = on_middle_planes(sections, stack)
         if stack.kind is not SectionKind.SLAB:
-            self._put_strays_aside()
-        return ContourStack(
-            sections=tuple(self._sections),
+            sections, notices = _strays_aside(sections, [one.at_border for one in traced], notices)
+        contours = ContourStack(
+            sections=tuple(sections),
             kind=stack.kind,
             exact=False,
             resolution=float(stack.pixel_spacing.max()),
@@ -90,25 +94,24 @@ class ContourSink:
             affine=stack.affine,
             scale_uncertainty=stack.scale_uncertainty,
             hints=stack.hints,
-            notices=(*stack.notices, *segmentation.notices, *gathered(self._notices), *self._mistakes()),
+            notices=(*stack.notices, *segmentation.notices, *gathered(notices), *self._mistakes(sections)),
             provenance=stack.provenance,
         )
+        remember_smooth(contours, {loop: smooth for one in traced for loop, smooth in one.smooth.items()})
+        return contours
 
-    def _put_strays_aside(self) -> None:
-        """Take what one photograph alone shows out of the sections; what was said of it goes too."""
-        self._sections, notices = without_strays(self._sections, self._at_border)
-        gone = tuple(f"{one.message.partition(': ')[0]}: " for one in notices if one.code == "edge-object")
-        self._notices = [
-            one for one in self._notices if one.code != "border-contact" or not one.message.startswith(gone)
-        ]
-        self._notices += notices
+    def _hand_over(self) -> None:
+        some, self._waiting = self._waiting, []
+        if some:
+            stack, rules = self._begun.stack, self._rules
+            self._behind.give(lambda: traced_slices(some, stack, rules))
 
-    def _mistakes(self) -> tuple[Notice, ...]:
+    def _mistakes(self, sections: list[Section]) -> tuple[Notice, ...]:
         """Return what the sections of photographs say of mistakes; a scanner takes its slices in order."""
         stack = self._begun.stack
         if stack.kind is SectionKind.SLAB:
             return ()
-        return stack_hazards(self._sections, float(stack.pixel_spacing.max()))
+        return stack_hazards(sections, float(stack.pixel_spacing.max()))
 
     @property
     def _begun(self) -> Segmentation:
@@ -126,11 +129,14 @@ def _seen_beyond(segmentation: Segmentation) -> tuple[float, float]:
     return float(max(first, default=0.0)), float(max(last, default=0.0))
 
 
-def _placed(loop: Loop, stack: SliceStack, index: int) -> Loop:
-    """Return the loop where it lies in the stack's plane coordinates."""
-    if stack.origins is None and stack.turns is None:
-        return loop
-    return replace(loop, points=frozen_floats(stack.placed(index, loop.points)))
+def _strays_aside(
+    sections: list[Section], at_border: list[tuple[bool, ...]], notices: list[Notice]
+) -> tuple[list[Section], list[Notice]]:
+    """Take what one photograph alone shows out of the sections; what was said of it goes too."""
+    kept, told = without_strays(sections, at_border)
+    gone = tuple(f"{one.message.partition(': ')[0]}: " for one in told if one.code == "edge-object")
+    said = [one for one in notices if one.code != "border-contact" or not one.message.startswith(gone)]
+    return kept, [*said, *told]
 
 
 def trace_stack(segmentation: Segmentation, rules: TraceRules | None = None) -> ContourStack:

@@ -10,6 +10,7 @@ from stackloft.geometry.correspondence import slide_points
 from stackloft.geometry.curve_stack import CurveStack
 from stackloft.geometry.point_density import Spread, spread_by_turning
 from stackloft.geometry.seams import solve_phases
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
@@ -78,7 +79,7 @@ def equal_points(contours: ContourStack, count: int, kept: frozenset[int] = froz
 
 def _check_fit(curves: CurveStack, loops: list[Loop], contours: ContourStack) -> None:
     """Refuse loops so jagged that the smooth curve through their points is another shape."""
-    given = np.array([loop.signed_area for loop in loops])
+    given = np.array([polygon_area(loop.points) for loop in loops])
     off = np.abs(curves.areas - given) > COARSEST * given
     if off.any():
         k = int(np.argmax(off))

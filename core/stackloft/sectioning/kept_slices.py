@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from stackloft.model.slice_stack import Picture
@@ -26,6 +27,8 @@ BUDGET = 240_000_000
 STRIDE = 4
 """Of the pixels kept away from bodies."""
 Window = tuple[slice, slice]
+_BY_OPENCV = "BHhfd"
+"""Kinds of numbers that OpenCV resizes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,10 +43,18 @@ class _Kept:
         if self.part.shape == self.shape:
             return self.part
         rows, columns = self.shape[:2]
-        wide = self.coarse.repeat(STRIDE, axis=0)[:rows].repeat(STRIDE, axis=1)[:, :columns]
+        wide = _widened(self.coarse)[:rows, :columns]
         wide[self.window] = self.part
         wide.setflags(write=False)
         return wide
+
+
+def _widened(coarse: Picture) -> Picture:
+    """Return the picture with every pixel `STRIDE` times as wide and as high."""
+    if coarse.dtype.char in _BY_OPENCV and coarse.size:  # half the time, and other threads go on meanwhile
+        size = (STRIDE * coarse.shape[1], STRIDE * coarse.shape[0])
+        return np.asarray(cv2.resize(coarse, size, interpolation=cv2.INTER_NEAREST))
+    return coarse.repeat(STRIDE, axis=0).repeat(STRIDE, axis=1)
 
 
 class KeptSlices:
@@ -80,6 +91,52 @@ class KeptSlices:
         """Return the slice as it was kept, or decode it again."""
         kept = self._kept.get(number)
         return self._decode(number) if kept is None else kept.picture()
+
+
+class Keeper:
+    """Has each slice kept around the bodies that it and those beside it show, whose slabs share its voxels.
+
+    Examples
+    --------
+    >>> kept = KeptSlices(lambda number: np.zeros((9, 9)))
+    >>> keeper = Keeper(kept)
+    >>> for number, rows in enumerate((slice(2, 4), slice(3, 5), None)):
+    ...     keeper.take(number, np.arange(81.0).reshape(9, 9), rows and (rows, slice(0, 9)))
+    >>> keeper.end()
+    >>> [kept(number)[[2, 4], 1].tolist() for number in range(3)]
+    [[19.0, 37.0], [19.0, 37.0], [0.0, 37.0]]
+    """
+
+    def __init__(self, kept: KeptSlices) -> None:
+        self._kept = kept
+        self._before: Window | None = None
+        self._last: tuple[int, Picture, Window | None] | None = None
+
+    def take(self, number: int, picture: Picture, window: Window | None) -> None:
+        """Take a slice with the window around its bodies, if any; the slice before is kept now."""
+        self._keep(window)
+        self._before = self._last[2] if self._last is not None else None
+        self._last = (number, picture, window)
+
+    def end(self) -> None:
+        """Have the last slice kept."""
+        self._keep(None)
+        self._last = None
+
+    def _keep(self, after: Window | None) -> None:
+        if self._last is not None:
+            number, picture, own = self._last
+            near = [window for window in (self._before, own, after) if window is not None]
+            self._kept.keep(number, picture, _joined(near))
+
+
+def _joined(windows: list[Window]) -> Window:
+    """Return the window that holds all of them; an empty one holds none."""
+    rows, columns = (
+        slice(min(part.start for part in parts), max(part.stop for part in parts))
+        for parts in (zip(*windows, strict=True) if windows else ([slice(0, 0)], [slice(0, 0)]))
+    )
+    return rows, columns
 
 
 class Peeked:

@@ -182,43 +182,64 @@ def _common(first: tuple[Pieces, Corner], second: tuple[Pieces, Corner]) -> tupl
     )
 
 
-def body_pieces(body: BoolArray) -> tuple[Pieces, IntArray, Corner]:
-    """Return the 4-connected pieces of a slice's body on their bounding box, their pixels, and its corner.
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyPieces:
+    """The 4-connected pieces of a slice's body, on their bounding box."""
 
-    A single piece, the usual case, is its own numbering and known by its outline alone.
+    pieces: Pieces
+    sizes: IntArray
+    """Pixels of each."""
+    corner: Corner
+    """Of the bounding box."""
+    outline: NDArray[np.int32] | None = None
+    """As a `SectionField` has it, of a single piece without a hole."""
+
+
+def body_pieces(body: BoolArray) -> BodyPieces:
+    """Return the pieces of a slice's body; a single one, the usual case, is known by its borders alone.
 
     Examples
     --------
     >>> body = np.zeros((6, 9), dtype=bool)
     >>> body[2:4, 3:8] = True
-    >>> pieces, sizes, corner = body_pieces(body)
-    >>> pieces.shape, sizes.tolist(), corner
-    ((2, 5), [10], (2, 3))
+    >>> found = body_pieces(body)
+    >>> found.pieces.shape, found.sizes.tolist(), found.corner, len(found.outline)
+    ((2, 5), [10], (2, 3), 10)
     """
     left, top, width, height = cv2.boundingRect(body.view(np.uint8))
     crop = body[top : top + height, left : left + width]
     bits = np.ascontiguousarray(crop).view(np.uint8)
-    if bits.size and single_piece(bits):
-        return bits, np.array([np.count_nonzero(bits)]), (top, left)
-    pieces, sizes = pieces_of(crop) if bits.size else (bits, np.zeros(0, dtype=np.int64))
-    return pieces, sizes, (top, left)
+    if not bits.size:
+        return BodyPieces(bits, np.zeros(0, dtype=np.int64), (top, left))
+    chains = single_piece(bits)
+    if not chains:
+        return BodyPieces(*pieces_of(crop), (top, left))
+    outline = chains[0] + np.array([left, top], np.int32) if len(chains) == 1 else None
+    return BodyPieces(bits, np.array([np.count_nonzero(bits)]), (top, left), outline)
 
 
-def single_piece(bits: NDArray[np.uint8]) -> bool:
-    """Return True when the pixels certainly form one 4-connected piece; a pinched one may be missed."""
+def single_piece(bits: NDArray[np.uint8]) -> list[NDArray[np.int32]]:
+    """Return the borders of pixels that certainly form one 4-connected piece; nothing of others.
+
+    Returns
+    -------
+    list of (k, 2) arrays
+        Column, row of the outline's pixels, then of each hole's. A pinched piece may be missed.
+    """
     outlines, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     if tree is None or np.count_nonzero(tree[0, :, 3] < 0) != 1:
-        return False
-    return not any(pinched(bits, outline[:, 0]) for outline in outlines)
+        return []
+    chains = [np.asarray(outlines[k][:, 0], np.int32) for k in np.argsort(tree[0, :, 3] >= 0, kind="stable")]
+    return [] if any(pinched(bits, chain) for chain in chains) else chains
 
 
 def pinched(bits: NDArray[np.uint8], chain: NDArray[Any]) -> bool:
     """Return whether a chain of border pixels steps between two that touch by their corners alone."""
-    following = np.roll(chain, -1, axis=0)
-    slanting = (chain != following).all(axis=1)
-    x, y = chain[slanting].T
-    to_x, to_y = following[slanting].T
-    return bool(((bits[y, to_x] == 0) & (bits[to_y, x] == 0)).any())
+    x, y = np.ascontiguousarray(chain.T)
+    to_x, to_y = np.concatenate([x[1:], x[:1]]), np.concatenate([y[1:], y[:1]])
+    slanting = np.flatnonzero((x != to_x) & (y != to_y))
+    x, y, to_x, to_y = x[slanting], y[slanting], to_x[slanting], to_y[slanting]
+    return not bool((bits[y, to_x] | bits[to_y, x]).all())
 
 
 def pieces_of(mask: BoolArray, connectivity: int = 4) -> tuple[Pieces, IntArray]:

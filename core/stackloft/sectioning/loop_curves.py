@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import islice
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -11,14 +13,22 @@ from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.errors import InputError
-from stackloft.sectioning.smoothing import smooth_loop
+from stackloft.sectioning.smoothing import smooth_loops
 
 _READY: WeakKeyDictionary[ContourStack, tuple[tuple[Loop, ...], ...]] = WeakKeyDictionary()
 _CURVES: WeakKeyDictionary[ContourStack, CurveStack] = WeakKeyDictionary()
+_SMOOTH: WeakKeyDictionary[ContourStack, dict[Loop, Loop]] = WeakKeyDictionary()
+
+
+def remember_smooth(contours: ContourStack, smooth: Mapping[Loop, Loop]) -> None:
+    """Remember what `smooth_loops` gave for some of a stack's loops at its resolution, to save it later."""
+    _SMOOTH[contours] = dict(smooth)
 
 
 def ready_loops(contours: ContourStack) -> tuple[tuple[Loop, ...], ...]:
-    """Return every section's loops by `ready_loop`; remembered as long as the stack itself is there.
+    """Return every section's loops by `ready_loop`, smoothed when they were traced.
+
+    They are remembered as long as the stack itself is there.
 
     Raises
     ------
@@ -27,8 +37,10 @@ def ready_loops(contours: ContourStack) -> tuple[tuple[Loop, ...], ...]:
     """
     ready = _READY.get(contours)
     if ready is None:
+        loops = iter(_smooth(contours))
         ready = tuple(
-            tuple(ready_loop(loop, contours, s.name) for loop in s.loops) for s in contours.sections
+            tuple(ready_loop(loop, section.name) for loop in islice(loops, len(section.loops)))
+            for section in contours.sections
         )
         _READY[contours] = ready
     return ready
@@ -52,13 +64,21 @@ def ready_curves(contours: ContourStack) -> CurveStack:
     return curves
 
 
-def ready_loop(loop: Loop, contours: ContourStack, name: str) -> Loop:
-    """Return the loop counter-clockwise, without repeated points, smoothed when it was traced."""
-    if not contours.exact:
-        loop = smooth_loop(loop, contours.resolution)
+def _smooth(contours: ContourStack) -> list[Loop]:
+    """Return all loops, smoothed when they were traced."""
+    flat = [loop for section in contours.sections for loop in section.loops]
+    if contours.exact:
+        return flat
+    known = _SMOOTH.get(contours, {})
+    others = iter(smooth_loops([loop for loop in flat if loop not in known], contours.resolution))
+    return [known[loop] if loop in known else next(others) for loop in flat]
+
+
+def ready_loop(loop: Loop, name: str) -> Loop:
+    """Return the loop counter-clockwise, without repeated points."""
     points, corners = _distinct(loop)
     area = polygon_area(points) if len(points) >= 3 else 0.0
-    if abs(area) <= 1e-12 * np.ptp(loop.points, axis=0).max() ** 2:
+    if abs(area) <= 1e-12 * np.abs(loop.points - loop.points[0]).max() ** 2:
         raise InputError("a loop without area", where=name, found=f"{len(points)} distinct points")
     if area < 0.0:
         points = points[::-1]
@@ -69,8 +89,8 @@ def ready_loop(loop: Loop, contours: ContourStack, name: str) -> Loop:
 def _distinct(loop: Loop) -> tuple[FloatArray, IntArray]:
     """Return the loop's vertices without those that repeat the one before, and its corners."""
     points = loop.points
-    step = np.abs(points - np.concatenate([points[-1:], points[:-1]])).max(axis=1)
-    keep = step > 1e-9 * np.abs(points - points[0]).max()
+    step = np.abs(points - np.concatenate([points[-1:], points[:-1]]))
+    keep = np.maximum(step[:, 0], step[:, 1]) > 1e-9 * np.abs(points - points[0]).max()
     if keep.all():
         return points, loop.corners
     corners = np.unique((np.cumsum(keep) - 1)[loop.corners] % max(int(keep.sum()), 1))

@@ -14,13 +14,14 @@ slice). Of a label map every label is a body, however near another, and its stra
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
-import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Beyond, SectionField, Segmentation
@@ -28,17 +29,16 @@ from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
 from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed, touching
 from stackloft.sectioning.cut_bodies import cut_apart
-from stackloft.sectioning.kept_slices import KeptSlices
-from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, body_pieces, pieces_of
+from stackloft.sectioning.kept_slices import Keeper, KeptSlices
+from stackloft.sectioning.linked_pieces import LinkedPieces
 from stackloft.sectioning.object_notices import cut_notice, stray_notice
-from stackloft.sectioning.voids import CRACK, VoidFinder, closed_background, void_notice
+from stackloft.sectioning.slice_look import SliceLook, framed_window, look_at
+from stackloft.sectioning.voids import VoidFinder, void_notice
 
 CRUMB = 0.02
 """Objects below this fraction of the largest are not worth a word."""
 KEPT = MARGIN + 2
 """Pixels kept as they were decoded around all bodies of a slice."""
-FRAME = 2 * CRACK + 1
-"""Pixels around the bodies within which background is looked through for what is closed in."""
 FEWEST = 12
 """Pixels of a body's slice; slices at its ends with fewer give no contour and are left out."""
 
@@ -80,7 +80,7 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
     linked = _linked(segmentation)
     if segmentation.neck is not None and len(linked.links.labels()):
         cut = cut_apart(linked.links, linked.voids, segmentation.stack, segmentation.neck)
-        linked = replace(linked, links=cut)
+        linked = replace(linked, links=cut, outlines={})
     links = linked.links
     labels = links.labels() if segmentation.neck is None else np.zeros_like(links.labels())
     if not len(labels):
@@ -109,89 +109,37 @@ def find_objects(segmentation: Segmentation) -> tuple[BodyObject, ...]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Look:
-    """What a slice shows, before it is known what belongs together."""
-
-    pieces: Pieces
-    sizes: IntArray
-    labels: IntArray
-    corner: Corner
-    """Of the pieces' bounding box."""
-    body: BoolArray
-    """Where any body is, on the bounding box with a frame."""
-    closed: Pieces | None
-    framed: Corner
-    """Of `body` and `closed`."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class _Linked:
     links: LinkedPieces
     """All pieces with their labels (0: none)."""
     voids: VoidFinder
     kept: KeptSlices
+    outlines: Mapping[int, NDArray[np.int32]]
+    """By slice, of bodies that are one piece without a hole."""
 
 
 def _linked(segmentation: Segmentation) -> _Linked:
     """Return what one pass over the slices finds."""
     links, voids = LinkedPieces(), VoidFinder()
+    outlines: dict[int, NDArray[np.int32]] = {}
     kept = KeptSlices(segmentation.stack.decode)
+    keeper = Keeper(kept)
     voxel = _voxel_volumes(segmentation.stack)
 
-    def work(index: int) -> _Look:
+    def work(index: int) -> tuple[Picture, SliceLook]:
         picture = segmentation.stack.decode(index)
-        look = _look(segmentation, picture, segmentation.field_of(index, picture))
-        kept.keep(index, picture, _framed(look.pieces.shape, look.corner, KEPT, picture.shape))
-        return look
+        return picture, look_at(segmentation, picture, segmentation.field_of(index, picture))
 
-    for index, look in enumerate(worked_ahead(len(segmentation), work)):
+    for index, (picture, look) in enumerate(worked_ahead(len(segmentation), work)):
+        window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)
+        keeper.take(index, picture, window if len(look.sizes) else None)
         links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner)
         if not segmentation.labels:
             voids.add(look.body, look.closed, look.framed)
-    return _Linked(links, voids, kept)
-
-
-def _look(segmentation: Segmentation, picture: Picture, section: SectionField) -> _Look:
-    """Return one slice's pieces, their pixels and labels, and the background that they close in."""
-    if segmentation.labels:
-        pieces, sizes, labels, corner = _labelled_pieces(picture)
-    else:
-        pieces, sizes, (row, column) = body_pieces(section.above())
-        corner = (section.offset[0] + row, section.offset[1] + column)
-        labels = np.zeros(len(sizes), dtype=np.int64)
-    rows, columns = _framed(pieces.shape, corner, FRAME, picture.shape)
-    body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
-    top, left = corner[0] - rows.start, corner[1] - columns.start
-    body[top : top + pieces.shape[0], left : left + pieces.shape[1]] = pieces > 0
-    closed = closed_background(body) if len(sizes) and not segmentation.labels else None
-    return _Look(pieces, sizes, labels, corner, body, closed, (rows.start, columns.start))
-
-
-def _framed(
-    shape: tuple[int, ...], corner: Corner, frame: int, whole: tuple[int, ...]
-) -> tuple[slice, slice]:
-    """Return the rows and columns of a box and a frame around it, within the picture."""
-    low = [max(0, corner[k] - frame) for k in (0, 1)]
-    high = [min(whole[k], corner[k] + shape[k] + frame) for k in (0, 1)]
-    return slice(low[0], high[0]), slice(low[1], high[1])
-
-
-def _labelled_pieces(picture: Picture) -> tuple[Pieces, IntArray, IntArray, Corner]:
-    """Return the pieces of all labels, numbered one after the other, their pixels, labels and corner."""
-    left, top, width, height = cv2.boundingRect((picture > 0).view(np.uint8))
-    part, corner = picture[top : top + height, left : left + width], (top, left)
-    whole, counts, labels = np.zeros(part.shape, np.int32), [_NO_INTS], [_NO_INTS]
-    done = 0
-    for label in np.unique(part[part > 0]):
-        pieces, sizes = pieces_of(part == label)
-        np.copyto(whole, pieces + done, where=pieces > 0)
-        done += len(sizes)
-        counts.append(sizes)
-        labels.append(np.full(len(sizes), int(label)))
-    return whole, np.concatenate(counts), np.concatenate(labels), corner
-
-
-_NO_INTS: IntArray = np.zeros(0, dtype=np.int64)
+        if look.outline is not None:
+            outlines[index] = look.outline
+    keeper.end()
+    return _Linked(links, voids, kept, outlines)
 
 
 def _voxel_volumes(stack: SliceStack) -> FloatArray:
@@ -209,7 +157,7 @@ def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[N
     """Return the body of the pieces `own` alone, on the slices where it is."""
     every, present = _present(whole, linked.links, own)
     first, last = present[0], present[-1]
-    body = BodyField(whole, linked.links, own, linked.voids, first)
+    body = BodyField(whole, linked.links, own, linked.voids, first, linked.outlines)
     inner = _void_volume(whole, linked, own)
     told = void_notice(inner, float(linked.links.sizes()[own].sum()), filled=whole.fill_voids)
     kept = replace(whole.stack, decode=linked.kept)

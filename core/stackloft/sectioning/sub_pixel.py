@@ -17,12 +17,14 @@ result is exact, whereas linear interpolation of the pixels themselves errs by u
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.sectioning.marching_squares import Crossings
 
 REACH = 2
@@ -37,25 +39,19 @@ _NEWTON_STEPS = 4
 _FEWEST = 16  # crossings below which a line is too small to be refined
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LevelLine:
+    """A closed line to be put where `field` equals `level`."""
+
+    crossings: Crossings
+    """It keeps `REACH` pixels from the field's border."""
+    field: NDArray[Any]
+    """(rows, columns), of any real dtype"""
+    level: float
+
+
 def crossing_points(line: Crossings, field: NDArray[Any], level: float = 0.0) -> FloatArray:
-    """Return the points of a closed line at which `field` equals `level`.
-
-    Only crossings of edges that run across the boundary rather than along it are kept, about one for
-    each pixel of its length, because the others are ill-conditioned.
-
-    Parameters
-    ----------
-    line : Crossings
-        From `closed_lines`.
-    field : ndarray, (rows, columns)
-        Of any real dtype; the line keeps `REACH` pixels from its border.
-    level : float
-        What the field is on the boundary.
-
-    Returns
-    -------
-    ndarray, (k, 2)
-        (column, row), sub-pixel.
+    """Return the points of one closed line, (k, 2), as `points_of_lines` does.
 
     Examples
     --------
@@ -67,46 +63,91 @@ def crossing_points(line: Crossings, field: NDArray[Any], level: float = 0.0) ->
     >>> round(float(points[:, 0].max()), 12)
     19.8
     """
-    along = np.where(line.down, field.shape[1], 1)
-    across = np.where(line.down, 1, field.shape[1])
-    base = line.row * field.shape[1] + line.column
-    flat = field.ravel()
-    samples = [flat[base + step * along] - level for step in (-1, 0, 1, 2)]
+    return points_of_lines([LevelLine(line, field, level)])[0]
+
+
+def points_of_lines(lines: Sequence[LevelLine]) -> list[FloatArray]:
+    """Return the points of closed lines at which each one's field equals its level.
+
+    Only crossings of edges that run across the boundary rather than along it are kept, about one for
+    each pixel of its length, because the others are ill-conditioned. Many lines at once, of many slices, take
+    less time than one by one.
+
+    Parameters
+    ----------
+    lines : sequence of LevelLine
+
+    Returns
+    -------
+    list of (k, 2) arrays
+        (column, row), sub-pixel.
+    """
+    if not lines:
+        return []
+    counts = np.array([len(line.crossings.row) for line in lines])
+    starts = np.cumsum(counts) - counts
+    row, column, down = (
+        np.concatenate([getattr(line.crossings, name) for line in lines])
+        for name in ("row", "column", "down")
+    )
+    around = np.concatenate([_around(line) for line in lines], axis=1)
+    level = np.repeat([line.level for line in lines], counts)
+    samples = around[1::3] - level
     fraction = samples[1] / (samples[1] - samples[2])
-    if len(base) >= _FEWEST:
-        keep = _runs_across(flat, base, along, across)
-        fraction = np.where(keep, _refined(samples, fraction), fraction)
-        if keep.sum() >= _FEWEST // 2:
-            line = Crossings(line.row[keep], line.column[keep], line.down[keep])
-            fraction = fraction[keep]
-    x = line.column + np.where(line.down, 0.0, fraction)
-    y = line.row + np.where(line.down, fraction, 0.0)
-    return np.column_stack([x, y])
+    fine = np.repeat(counts >= _FEWEST, counts) & _runs_across(around)
+    _refine(fraction, samples, fine, starts)
+    many = np.add.reduceat(fine, starts, dtype=np.int64) >= _FEWEST // 2
+    kept = np.flatnonzero(fine | ~np.repeat(many, counts))
+    row, column, down, fraction = row[kept], column[kept], down[kept], fraction[kept]
+    points = np.empty((len(kept), 2))
+    points[:, 0] = column + np.where(down, 0.0, fraction)
+    points[:, 1] = row + np.where(down, fraction, 0.0)
+    return np.split(points, np.searchsorted(kept, starts[1:]))
 
 
-def _refined(samples: list[FloatArray], plain: FloatArray) -> FloatArray:
-    """Return the crossings of the three-pixel means, or of the cubic where that serves better.
+def _around(line: LevelLine) -> FloatArray:
+    """Return the 4 × 3 pixels around every edge, (12, n): by threes across it, from before its first on."""
+    width = line.field.shape[1]
+    steps, sides = np.arange(-1, 3)[:, None], np.arange(-1, 2)
+    offsets = np.stack([steps + width * sides, width * steps + sides], axis=-1).reshape(12, 2)
+    base = line.crossings.row * width + line.crossings.column
+    at = offsets.take(line.crossings.down.view(np.int8), axis=1)
+    at += base
+    return line.field.ravel().take(at).astype(np.float64)
+
+
+def _refine(fraction: FloatArray, samples: FloatArray, fine: NDArray[np.bool_], starts: IntArray) -> None:
+    """Put crossings where the three-pixel means cross, or the cubic where that serves better, in place.
 
     Averaging makes a step three pixels wide. That is needed where the picture is so sharp that the step
     takes less than two; where the lens has blurred it, or the level is far from its middle, the cubic
     is as good and sees less of a skin that is darker than the flesh behind it.
     """
-    a, b, c, d = samples
-    clean = (a * b > 0) & (c * d > 0)
-    if not clean.any():
-        return plain
-    cubic = np.where(clean, _cubic_crossing(samples, plain), plain)
-    means = np.divide(a + b + c, a - d, out=cubic.copy(), where=clean)
-    off_middle = np.divide(np.abs(a + d) / 2, np.abs(a - d), out=np.ones_like(a), where=clean)
-    sharpness = np.abs(b - c)[clean].sum() / np.abs(a - d)[clean].sum()
-    share = _ramp(sharpness, _BLURRED, _SHARP) * _ramp(-off_middle, -_OFF, -_NEARLY_OFF)
+    clean = (samples[0] * samples[1] > 0) & (samples[2] * samples[3] > 0)
+    blur = _ramp(_sharpness(samples, clean, starts), _BLURRED, _SHARP)
+    chosen = np.flatnonzero(clean & fine)
+    a, b, c, d = samples[:, chosen]
+    cubic = _cubic_crossing(a, b, c, d, fraction[chosen])
+    rise = a - d
+    means = (a + b + c) / rise
+    off_middle = np.abs(a + d) / (2.0 * np.abs(rise))
+    sharp = np.repeat(blur, np.diff(starts, append=len(clean)))[chosen]
+    share = sharp * _ramp(-off_middle, -_OFF, -_NEARLY_OFF)
     near = (means >= -_BEYOND) & (means <= 1 + _BEYOND)
-    return np.where(near, share * means + (1 - share) * cubic, cubic)
+    fraction[chosen] = np.where(near, share * means + (1 - share) * cubic, cubic)
 
 
-def _cubic_crossing(samples: list[FloatArray], start: FloatArray) -> FloatArray:
-    """Return where the cubic through the four samples is zero, between the middle two (Newton's method)."""
-    a, b, c, d = samples
+def _sharpness(samples: FloatArray, clean: NDArray[np.bool_], starts: IntArray) -> FloatArray:
+    """Return which part of a step lies between the two pixels, over each line; 0 where it has no step."""
+    between = np.add.reduceat(np.where(clean, np.abs(samples[1] - samples[2]), 0.0), starts)
+    whole = np.add.reduceat(np.where(clean, np.abs(samples[0] - samples[3]), 0.0), starts)
+    return np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0.0)
+
+
+def _cubic_crossing(
+    a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, start: FloatArray
+) -> FloatArray:
+    """Return where the cubic through four samples is zero, between the middle two (Newton's method)."""
     linear = -a / 3 - b / 2 + c - d / 6
     square = a / 2 - b + c / 2
     cube = (b - c) / 2 + (d - a) / 6
@@ -123,17 +164,15 @@ def _ramp(value: FloatArray, low: float, high: float) -> FloatArray:
     return np.clip((value - low) / (high - low), 0.0, 1.0)
 
 
-def _runs_across(
-    flat: NDArray[Any], base: NDArray[np.int64], along: NDArray[np.int64], across: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+_ALONG_AND_ACROSS = np.array([[-3, -3, -3, -1, -1, -1, 1, 1, 1, 3, 3, 3], 4 * [-1, 0, 1]], dtype=np.float64)
+"""Weights of the least-squares plane through 4 × 3 pixels: 30 times its slope along, 8 times that across."""
+
+
+def _runs_across(around: FloatArray) -> NDArray[np.bool_]:
     """Return whether the field changes faster along the crossed edge than across it.
 
-    Slopes of the plane fitted to the 4 × 3 pixels around the edge by least squares.
+    Slopes of the plane fitted to the 4 × 3 pixels around the edge by least squares; in whole numbers, so that
+    where both are alike in whole grey levels no rounding decides.
     """
-    steep = np.zeros(len(base))
-    flank = np.zeros(len(base))
-    for step, lever in zip((-1, 0, 1, 2), (-1.5, -0.5, 0.5, 1.5), strict=True):
-        rows = [flat[base + step * along + side * across].astype(np.float64) for side in (-1, 0, 1)]
-        steep += lever * (rows[0] + rows[1] + rows[2]) / 15.0
-        flank += (rows[2] - rows[0]) / 8.0
-    return np.asarray(np.abs(steep) >= _DOMINANCE * np.abs(flank))
+    along, across = np.abs(_ALONG_AND_ACROSS @ around)
+    return np.asarray(8 * along >= 30 * _DOMINANCE * across)

@@ -28,6 +28,7 @@ CONTINUED = 0.5
 CRACK = 2
 """Pixels: a passage no wider than twice this is none; it counts as void, with what lies behind it."""
 _ENDLESS = 1e18  # pixels of the outer background, which is larger than any void
+_DISC = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK + 1))
 _FEWEST = 20  # pixels of a crack; fewer are the staircase of a slanting boundary
 
 
@@ -46,10 +47,9 @@ def outer_background(body: BoolArray) -> BoolArray:
     109
     """
     background = (~body).astype(np.uint8)
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK + 1))
     framed = np.pad(background, 2 * CRACK, constant_values=1)
-    wide, _ = pieces_of(cv2.erode(framed, disc, borderValue=1) > 0)
-    reached = cv2.dilate((wide == wide[0, 0]).astype(np.uint8), disc)[
+    wide, _ = pieces_of(cv2.erode(framed, _DISC, borderValue=1) > 0)
+    reached = cv2.dilate((wide == wide[0, 0]).astype(np.uint8), _DISC)[
         2 * CRACK : -2 * CRACK, 2 * CRACK : -2 * CRACK
     ]
     rest, sizes = pieces_of((background > reached), connectivity=8)
@@ -82,33 +82,36 @@ def void_notice(voids: float, solid: float, *, filled: bool) -> tuple[Notice, ..
     return (Notice("voids-kept", f"{share} are left out; --set segmenter.voids=fill counts them as body"),)
 
 
-def closed_background(body: BoolArray) -> Pieces | None:
+def closed_background(body: BoolArray, *, solid: bool = False) -> Pieces | None:
     """Return the numbered pieces of background that `outer_background` does not reach; None: there are none.
 
-    Most slices have none, which their outlines tell without looking at every pixel.
+    Most slices have none, which their outlines tell without looking at every pixel. `solid`: the body is
+    known to have no hole.
     """
-    if _surely_open(body.view(np.uint8)):
+    if _surely_open(body.view(np.uint8), solid=solid):
         return None
     pieces, sizes = pieces_of(~(body | outer_background(body)), connectivity=8)
     return pieces if len(sizes) else None
 
 
-def _surely_open(bits: NDArray[np.uint8]) -> bool:
+def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
     """Return True when there is no hole, none behind a passage closed by the disc, and no long crack.
 
     The disc's closing of the body is the complement of the background's opening.
     """
-    if bits[[0, -1]].any() or bits[:, [0, -1]].any() or _has_holes(np.ascontiguousarray(bits)):
+    if bits[0].any() or bits[-1].any() or bits[:, 0].any() or bits[:, -1].any():
         return False
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK + 1))
-    framed = np.pad(bits, 2 * CRACK)
-    wide = cv2.dilate(framed, disc)
+    if not solid and _has_holes(np.ascontiguousarray(bits)):
+        return False
+    around = (2 * CRACK,) * 4
+    framed = cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0)
+    wide = cv2.dilate(framed, _DISC)
     if _has_holes(wide):
         return False
-    cracks = cv2.erode(wide, disc) > framed
-    if np.count_nonzero(cracks) < _FEWEST:
+    cracks = cv2.subtract(cv2.erode(wide, _DISC), framed)
+    if cv2.countNonZero(cracks) < _FEWEST:
         return True
-    return bool(pieces_of(cracks, connectivity=8)[1].max() < _FEWEST)
+    return bool(pieces_of(cracks > 0, connectivity=8)[1].max() < _FEWEST)
 
 
 def _has_holes(bits: cv2.typing.MatLike) -> bool:

@@ -11,11 +11,11 @@ r"""Partial volume: grey levels as the fraction of a pixel or slab that the body
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
@@ -28,8 +28,7 @@ from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
-
-Mask = NDArray[np.uint8]
+from stackloft_plugins.integrators.seen_slice import Mask, SeenSlice
 
 _RING = 4
 """px: width of the rings beside the edge zone from which the two grey levels are taken."""
@@ -37,6 +36,8 @@ _ENOUGH = 20
 """Pixels in a ring for its level to count."""
 _FEW = 4
 """Likewise of the innermost pixels of a thin body."""
+_BEYOND, _EDGE, _WITHIN = 1, 2, 3
+"""Zones around the boundary, by how many of the outer ring, the edge zone and the inside hold a pixel."""
 _EMPTY = 2.5
 """Times the background's lift by noise: greys below this are taken for empty pixels (3.1 σ)."""
 
@@ -92,44 +93,6 @@ class _SliceSums:
     """Field of what is at least one pixel inside, for bodies so thin that there is no ring."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
-    """A slice's field, where it lies, and where it is body."""
-
-    section: SectionField
-    body: Mask
-
-    @staticmethod
-    def of(section: SectionField) -> _Seen:
-        return _Seen(section, section.above().view(np.uint8))
-
-    def mask(self, window: tuple[int, int, int, int]) -> Mask:
-        """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""
-        if window == self.window:
-            return self.body
-        top, left, bottom, right = window
-        mask = np.zeros((bottom - top, right - left), np.uint8)
-        row, column = self.section.offset[0] - top, self.section.offset[1] - left
-        part = self.body[
-            max(-row, 0) : max(bottom - top - row, 0), max(-column, 0) : max(right - left - column, 0)
-        ]
-        row, column = max(row, 0), max(column, 0)
-        mask[row : row + part.shape[0], column : column + part.shape[1]] = part
-        return mask
-
-    @property
-    def window(self) -> tuple[int, int, int, int]:
-        """Top, left, bottom, right."""
-        row, column = self.section.offset
-        return row, column, row + self.body.shape[0], column + self.body.shape[1]
-
-    def relative(self, where: NDArray[np.bool_]) -> FloatArray:
-        """Return the field above its level at the pixels chosen."""
-        local = self.section.local_levels
-        level = self.section.level if local is None else local[where]
-        return np.asarray(self.section.values[where] - level, dtype=np.float64)
-
-
 class _CoverageSink:
     """Sums each slice when the one after it is there."""
 
@@ -141,8 +104,8 @@ class _CoverageSink:
         stack = segmentation.stack
         self._slab = stack.kind is SectionKind.SLAB
         self._lift = segmentation.noise_floor
-        self._before: _Seen | None = None
-        self._current: _Seen | None = None
+        self._before: SeenSlice | None = None
+        self._current: SeenSlice | None = None
         self._sums: list[_SliceSums] = []
         for beyond in segmentation.before:
             self._take(self._seen(beyond.field()))
@@ -163,10 +126,10 @@ class _CoverageSink:
         volume, bias = slab_sum_at(self._covered() * pixels, positions, stack)
         return Integral(volume, None, volume_bias=bias)
 
-    def _seen(self, section: SectionField) -> _Seen:
-        return _Seen.of(section if self._segmentation.binary else cleaned(section, labels=False))
+    def _seen(self, section: SectionField) -> SeenSlice:
+        return SeenSlice.of(section if self._segmentation.binary else cleaned(section, labels=False))
 
-    def _take(self, seen: _Seen | None) -> None:
+    def _take(self, seen: SeenSlice | None) -> None:
         if self._current is not None and self._segmentation.binary:
             self._sums.append(_counted(self._current))
         elif self._current is not None:
@@ -197,39 +160,52 @@ class _CoverageSink:
         return np.array(covered)
 
 
-def _counted(current: _Seen) -> _SliceSums:
+def _counted(current: SeenSlice) -> _SliceSums:
     """Return what one slice of a label map adds: its voxels."""
     nan = float("nan")
     return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, nan, nan, nan)
 
 
-def _sums(current: _Seen, beside: tuple[_Seen | None, _Seen | None], zone: int, lift: float) -> _SliceSums:
+def _sums(
+    current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int, lift: float
+) -> _SliceSums:
     """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside, thin = (
-        cv2.erode(common, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1) for depth in (zone, 1)
-    )
-    deep = cv2.erode(inside, _disc(_RING), borderType=cv2.BORDER_CONSTANT, borderValue=1)
+    inside = _eroded(common, zone)
+    deep = _eroded(inside, _RING)
     near = cv2.dilate(united, _disc(zone))
     wide = cv2.dilate(near, _disc(_RING))
-    background = _level(current.relative(wide > near)) - lift * MEDIAN / MEAN
-    edge = current.relative(near > inside)
+    where = np.flatnonzero((wide > deep).view(np.bool_))  # around the boundary alone
+    zones = (inside + near + wide).ravel()[where]
+    grey = current.relative(where)
+    edge, body = grey[zones == _EDGE], _level(grey[zones == _WITHIN])
+    background = _level(grey[zones == _BEYOND]) - lift * MEDIAN / MEAN
     return _SliceSums(
-        inside=int(np.count_nonzero(inside)),
+        inside=cv2.countNonZero(inside),
         edge=len(edge),
         grey=float(edge.sum()) - lift * np.count_nonzero(edge < background + _EMPTY * lift),
-        body=_level(current.relative(inside > deep)),
+        body=body,
         background=background,
-        near=_level(current.relative(thin > 0), _FEW),
+        near=_innermost(current, common) if np.isnan(body) else body,
     )
+
+
+def _innermost(current: SeenSlice, common: Mask) -> float:
+    """Return the level of a thin body's innermost pixels."""
+    return _level(current.relative(np.flatnonzero(_eroded(common, 1))), _FEW)
+
+
+def _eroded(mask: Mask, depth: int) -> Mask:
+    return np.asarray(cv2.erode(mask, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
 
 
 def _level(values: FloatArray, enough: int = _ENOUGH) -> float:
     return float(np.median(values)) if len(values) >= enough else float("nan")
 
 
+@lru_cache
 def _disc(radius: int) -> Mask:
     side = 2 * radius + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side)), np.uint8)

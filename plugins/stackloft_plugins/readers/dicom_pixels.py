@@ -88,7 +88,8 @@ def rescaled(stored: NDArray[Any], slope: float, intercept: float) -> NDArray[An
         narrow = min(low, shift) >= -(2**15) and max(high, shift) < 2**15
         if not narrow:
             return stored.astype(np.int32) + np.int32(shift)
-        return stored.astype(np.int16) + np.int16(shift)  # uint16 that wraps round comes back by the shift
+        short = stored.view(np.int16) if stored.dtype.itemsize == 2 else stored.astype(np.int16)
+        return short + np.int16(shift)  # uint16 that wraps round comes back by the shift
     wide = np.float32 if stored.dtype.itemsize <= 2 else np.float64
     values = stored.astype(np.float64) * slope + intercept
     return values.astype(wide)

@@ -131,7 +131,19 @@ class _Volume:
         with self._lock:
             if self._array is None:
                 self._array = self._loaded(self._key)
-            return read_only(np.array(self._array[number]))
+        if isinstance(self._array, np.memmap) and self._array.flags.c_contiguous:
+            return self._read(self._array, number)
+        return read_only(np.array(self._array[number]))
+
+    def _read(self, array: np.memmap[Any, Any], number: int) -> Picture:
+        """Return a slice of a plain array, read: what is mapped stays in memory longer than it is wanted."""
+        count = array.shape[1] * array.shape[2]
+        start = array.offset + number * count * array.itemsize
+        try:
+            values = np.fromfile(self._path, dtype=array.dtype, count=count, offset=start)
+            return read_only(values.reshape(array.shape[1:]))
+        except (OSError, ValueError) as error:  # gone, or cut short, since its head was read
+            raise self._damaged(error) from error
 
     def _loaded(self, key: str) -> Any:
         """Return an array: a packed one in memory, a plain one mapped."""

@@ -14,18 +14,24 @@ Where noise lifts the background (`geometry.noise_floor`), the level is half-way
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from stackloft.geometry.noise_floor import MEAN, MEDIAN, noise_floor
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
-from stackloft.model.slice_stack import SliceStack
+from stackloft.model.slice_stack import Picture, SliceStack
+from stackloft.sectioning.ahead import worked_ahead
 from stackloft_plugins.segmenters.grey import Grey, grey_levels
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 
+Levels = NDArray[Any]
+"""(rows, columns) grey levels of any real dtype."""
 SAMPLED = 24
 """Slices looked at."""
 _NEAR, _FAR = 3.0, 10.0  # pixels
@@ -82,16 +88,23 @@ def pooled_sample(stack: SliceStack, channel: str, sampled: int) -> Grey:
     return _pooled(_sample(stack, channel, sampled))
 
 
-def _sample(stack: SliceStack, channel: str, sampled: int) -> list[Grey]:
+def _sample(stack: SliceStack, channel: str, sampled: int) -> list[Levels]:
     numbers = np.unique(np.linspace(0, len(stack) - 1, sampled).astype(int))
-    return [grey_levels(stack.decode(int(k)), channel) for k in numbers]
+    return [_levels(stack.decode(int(k)), channel) for k in numbers]
 
 
-def _pooled(sample: list[Grey]) -> Grey:
-    return np.concatenate([grey[::2, ::2].ravel() for grey in sample])
+def _levels(picture: Picture, channel: str) -> Levels:
+    """Return grey levels; a scan's own short whole numbers need no copy, and take no more memory."""
+    if picture.ndim == 2 and picture.dtype.kind in "iu" and picture.dtype.itemsize <= 2:
+        return picture
+    return grey_levels(picture, channel)
 
 
-def _half_way(sample: list[Grey], level: float, *, above: bool, where: str) -> SlabLevel:
+def _pooled(sample: list[Levels]) -> Grey:
+    return np.concatenate([grey[::2, ::2].ravel().astype(np.float32) for grey in sample])
+
+
+def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) -> SlabLevel:
     sign = 1.0 if above else -1.0
     for _ in range(_ROUNDS):
         inside, outside = _bands(sample, level, sign)
@@ -109,26 +122,45 @@ def _half_way(sample: list[Grey], level: float, *, above: bool, where: str) -> S
     return SlabLevel(level, above, floor, (Notice("low-contrast", text),))
 
 
-def _bands(sample: list[Grey], level: float, sign: float) -> tuple[Grey, Grey]:
+def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]:
     """Return the grey levels in the bands within and beyond the boundaries; nearer where bodies are thin."""
-    inside, outside, thin = [], [], []
-    for grey in sample:
-        mask = (sign * grey > sign * level).astype(np.uint8)
-        if not mask.any() or mask.all():
-            continue
-        within, beyond = _distance(mask), _distance(1 - mask)
-        inside.append(grey[(within > _NEAR) & (within <= _FAR)])
-        thin.append(grey[within > 1])
-        outside.append(grey[(beyond > _NEAR) & (beyond <= _FAR)])
-    empty = np.zeros(0, dtype=np.float32)
-    deep = np.concatenate([empty, *inside])
-    return deep if deep.size else np.concatenate([empty, *thin]), np.concatenate([empty, *outside])
+    found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign)))
+    deep, thin, outside = (np.concatenate(bands) for bands in zip(*found, strict=True))
+    return deep if deep.size else thin, outside
+
+
+def _slice_bands(grey: Levels, level: float, sign: float) -> tuple[Grey, Grey, Grey]:
+    """Return the levels in the band within, in all of the body but its rim, and in the band beyond."""
+    if grey.dtype.kind in "iu":
+        mask = (grey > math.floor(level) if sign > 0.0 else grey < math.ceil(level)).view(np.uint8)
+    else:
+        mask = (grey > level if sign > 0.0 else grey < level).view(np.uint8)
+    if not mask.any() or mask.all():
+        empty = np.zeros(0, dtype=np.float32)
+        return empty, empty, empty
+    window = _window(mask)
+    grey, mask = grey[window], np.ascontiguousarray(mask[window])
+    within, beyond = _distance(mask), _distance(1 - mask)
+    bands = (within > _NEAR) & (within <= _FAR), within > 1, (beyond > _NEAR) & (beyond <= _FAR)
+    inside, thin, outside = (grey[band].astype(np.float32) for band in bands)
+    return inside, thin, outside
+
+
+def _window(mask: cv2.typing.MatLike) -> tuple[slice, slice]:
+    """Return the rows and columns of the body and all within `_FAR` pixels of it."""
+    left, top, width, height = cv2.boundingRect(mask)
+    room = math.ceil(_FAR) + 2
+    rows, columns = mask.shape
+    return (
+        slice(max(0, top - room), min(rows, top + height + room)),
+        slice(max(0, left - room), min(columns, left + width + room)),
+    )
 
 
 def _distance(mask: cv2.typing.MatLike) -> Grey:
     return np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, 3), dtype=np.float32)
 
 
-def frame_of(grey: Grey) -> Grey:
+def frame_of(grey: Levels) -> Grey:
     """Return the outermost pixels, taken for background."""
-    return np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
+    return np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]]).astype(np.float32)

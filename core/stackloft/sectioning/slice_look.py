@@ -1,0 +1,82 @@
+"""One look at a slice: its pieces, their borders, and the background that they close in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.arrays import BoolArray, IntArray
+from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.slice_stack import Picture
+from stackloft.sectioning.linked_pieces import Corner, Pieces, body_pieces, pieces_of
+from stackloft.sectioning.voids import CRACK, closed_background
+
+FRAME = 2 * CRACK + 1
+"""Pixels around the bodies within which background is looked through for what is closed in."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SliceLook:
+    """What a slice shows, before it is known what belongs together."""
+
+    pieces: Pieces
+    sizes: IntArray
+    labels: IntArray
+    corner: Corner
+    """Of the pieces' bounding box."""
+    outline: NDArray[np.int32] | None
+    """Of a body that is one piece without a hole."""
+    body: BoolArray
+    """Where any body is, on the bounding box with a frame."""
+    closed: Pieces | None
+    framed: Corner
+    """Of `body` and `closed`."""
+
+
+def look_at(segmentation: Segmentation, picture: Picture, section: SectionField) -> SliceLook:
+    """Return one slice's pieces, their pixels and labels, and the background that they close in."""
+    if segmentation.labels:
+        (pieces, sizes, labels, corner), outline = _labelled_pieces(picture), None
+    else:
+        found = body_pieces(section.above())
+        pieces, sizes = found.pieces, found.sizes
+        corner = (section.offset[0] + found.corner[0], section.offset[1] + found.corner[1])
+        outline = None if found.outline is None else found.outline + np.array(section.offset[::-1], np.int32)
+        labels = np.zeros(len(sizes), dtype=np.int64)
+    rows, columns = framed_window(pieces.shape, corner, FRAME, picture.shape)
+    body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
+    top, left = corner[0] - rows.start, corner[1] - columns.start
+    body[top : top + pieces.shape[0], left : left + pieces.shape[1]] = pieces > 0
+    looked = len(sizes) and not segmentation.labels
+    closed = closed_background(body, solid=outline is not None) if looked else None
+    return SliceLook(pieces, sizes, labels, corner, outline, body, closed, (rows.start, columns.start))
+
+
+def framed_window(
+    shape: tuple[int, ...], corner: Corner, frame: int, whole: tuple[int, ...]
+) -> tuple[slice, slice]:
+    """Return the rows and columns of a box and a frame around it, within the picture."""
+    low = [max(0, corner[k] - frame) for k in (0, 1)]
+    high = [min(whole[k], corner[k] + shape[k] + frame) for k in (0, 1)]
+    return slice(low[0], high[0]), slice(low[1], high[1])
+
+
+def _labelled_pieces(picture: Picture) -> tuple[Pieces, IntArray, IntArray, Corner]:
+    """Return the pieces of all labels, numbered one after the other, their pixels, labels and corner."""
+    left, top, width, height = cv2.boundingRect((picture > 0).view(np.uint8))
+    part, corner = picture[top : top + height, left : left + width], (top, left)
+    whole, counts, labels = np.zeros(part.shape, np.int32), [_NO_INTS], [_NO_INTS]
+    done = 0
+    for label in np.unique(part[part > 0]):
+        pieces, sizes = pieces_of(part == label)
+        np.copyto(whole, pieces + done, where=pieces > 0)
+        done += len(sizes)
+        counts.append(sizes)
+        labels.append(np.full(len(sizes), int(label)))
+    return whole, np.concatenate(counts), np.concatenate(labels), corner
+
+
+_NO_INTS: IntArray = np.zeros(0, dtype=np.int64)

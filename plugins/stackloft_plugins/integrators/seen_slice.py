@@ -1,0 +1,52 @@
+"""A slice as those see it who look at its pixels and those of the slices beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.segmentation import SectionField
+
+Mask = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenSlice:
+    """A slice's field, where it lies, and where it is body."""
+
+    section: SectionField
+    body: Mask
+
+    @staticmethod
+    def of(section: SectionField) -> SeenSlice:
+        """Return a section with its body's pixels."""
+        return SeenSlice(section, section.above().view(np.uint8))
+
+    def mask(self, window: tuple[int, int, int, int]) -> Mask:
+        """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""
+        if window == self.window:
+            return self.body
+        top, left, bottom, right = window
+        mask = np.zeros((bottom - top, right - left), np.uint8)
+        row, column = self.section.offset[0] - top, self.section.offset[1] - left
+        part = self.body[
+            max(-row, 0) : max(bottom - top - row, 0), max(-column, 0) : max(right - left - column, 0)
+        ]
+        row, column = max(row, 0), max(column, 0)
+        mask[row : row + part.shape[0], column : column + part.shape[1]] = part
+        return mask
+
+    @property
+    def window(self) -> tuple[int, int, int, int]:
+        """Top, left, bottom, right."""
+        row, column = self.section.offset
+        return row, column, row + self.body.shape[0], column + self.body.shape[1]
+
+    def relative(self, where: IntArray) -> FloatArray:
+        """Return the field above its level at the pixels with these numbers, row after row."""
+        local = self.section.local_levels
+        level = self.section.level if local is None else local.ravel()[where]
+        return np.asarray(self.section.values.ravel()[where].astype(np.float64) - level)
