@@ -167,17 +167,17 @@ def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[N
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
         noise_floor=whole.noise_floor,
-        before=_beyond(body, range(every[0] - 1, first)),
-        after=_beyond(body, range(last + 1, every[-1] + 2)),
+        before=_beyond(body, linked.kept, range(every[0] - 1, first)),
+        after=_beyond(body, linked.kept, range(last + 1, every[-1] + 2)),
     )
 
 
-def _beyond(body: BodyField, numbers: range) -> tuple[Beyond, ...]:
-    """Return the slices of those numbers that the scan has; never from what was kept: it is coarse there."""
+def _beyond(body: BodyField, kept: KeptSlices, numbers: range) -> tuple[Beyond, ...]:
+    """Return the slices of those numbers that the scan has; they are kept around the body beside them."""
     stack = body.whole.stack
 
     def shown(number: int) -> SectionField:
-        return body(number - body.first, stack.decode(number))
+        return body(number - body.first, kept(number))
 
     area = stack.pixel_spacing.prod(axis=1)
     return tuple(
