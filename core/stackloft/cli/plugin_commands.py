@@ -70,7 +70,7 @@ FamilyName = Annotated[
     str,
     typer.Argument(
         metavar="FAMILY",
-        help="reader, segmenter, reconstructor, integrator, writer or recipe.",
+        help="reader, segmenter, reconstructor, mesher, integrator, writer or recipe.",
         show_default=False,
     ),
 ]

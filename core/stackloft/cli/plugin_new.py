@@ -18,6 +18,13 @@ from stackloft.model.errors import OutputError, UsageError
 from stackloft.registry.find import nearest
 from stackloft.registry.scan import catalogue
 
+USE = {
+    "reader": "stackloft measure SOURCE",
+    "segmenter": "stackloft measure SOURCE --segmenter {name}",
+    "writer": "stackloft measure SOURCE --out RUN --write {name}",
+}
+"""How a plug-in of a family takes part in a run; others bring a method of their name."""
+_BY_METHOD = "stackloft measure SOURCE --method {name}"
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 
 
@@ -55,7 +62,19 @@ def run(family: str, name: str, out: Path | None) -> None:
         "    pip install --no-build-isolation --no-deps -e .\n"
         "    pytest\n"
         f"    stackloft plugins check {family}.{name}\n"
+        f"    {use_of(family, name)}\n"
     )
+
+
+def use_of(family: str, name: str) -> str:
+    """Return the command line in which a new plug-in takes part.
+
+    Examples
+    --------
+    >>> use_of("mesher", "acme-mesh")
+    'stackloft measure SOURCE --method acme-mesh'
+    """
+    return USE.get(family, _BY_METHOD).format(name=name)
 
 
 def families() -> tuple[str, ...]:
@@ -79,6 +98,7 @@ def render(family: str, name: str) -> dict[str, str]:
         "Class": "".join(part.capitalize() for part in name.split("-")),
         "family": family,
         "api": API,
+        "use": use_of(family, name),
     }
     templates = files("stackloft.cli").joinpath("templates")
     texts = {**_texts(templates / "common"), **_texts(templates / family)}
