@@ -68,6 +68,8 @@ def test_there_are_enough_bodies_and_each_has_its_bounds():
 @pytest.mark.parametrize("label", BY_LABEL)
 def test_every_method_keeps_its_promise(label):
     found = {(row.axis, row.method): row for row in finest(studied(label).rows)}
+    promised = {(axis, method) for axis in axes_of(label) for method in bounds()[label][axis]}
+    assert {key for key, row in found.items() if row.failure is None} <= promised
     for axis in axes_of(label):
         for method, bound in bounds()[label][axis].items():
             row = found[axis, method]

@@ -19,6 +19,7 @@ from stackloft_plugins.integrators.surface_gauss import SurfaceGauss
 from stackloft_plugins.meshers.boundary_target import boundary_target
 from stackloft_plugins.meshers.sizing_field import curvature, sizing_field
 from stackloft_plugins.meshers.tetwild import Tetwild
+from stackloft_plugins.meshers.tetwild_body import body_of
 from stackloft_plugins.meshers.tetwild_call import Wanted, tetrahedra
 from stackloft_plugins.reconstructors.loft import LoftReconstructor
 from stackloft_plugins.worker import Limits, WorkerError, run_alone
@@ -215,6 +216,21 @@ def test_regions_edges_and_corners_of_a_cylinder():
     assert lengths.max() == 0.5
     edges = points[cells[:, 1:]] - points[cells[:, :1]]
     assert (np.abs(np.linalg.det(edges)) > 0).all()
+
+
+def test_a_plane_end_that_the_surface_runs_into_smoothly_is_part_of_what_is_met():
+    """A torus closes over its ridge in a narrow plane ring, where no patch lies."""
+    solid = LoftReconstructor().reconstruct(phantoms.make("torus").contour_stack(sections=7))
+    body = body_of(solid)
+    surface = body.surface(0.2)
+    target = boundary_target(surface, body.patches, body.ends())
+    assert not target.regions.plane.all()
+    on_end = surface.vertices[surface.faces[target.flat]].mean(axis=1)
+    assert len(on_end) > 20
+    region = target.regions.region[target.flat]
+    for number in np.unique(region):
+        mine = on_end[region == number]
+        np.testing.assert_allclose(target.on_region(int(number))(mine), mine, atol=1e-9)
 
 
 @pytest.mark.prove

@@ -2,23 +2,18 @@
 
 import pytest
 
-from stackloft.testing import phantoms
+from stackloft.testing.phantoms.topology import TOPOLOGY
 from stackloft_plugins.integrators.fem import Fem
 from stackloft_plugins.integrators.surface_gauss import SurfaceGauss
 from stackloft_plugins.meshers.tetwild import Tetwild
 from stackloft_plugins.reconstructors.loft import LoftReconstructor
 
-BODIES = (
-    *("blind-hole", "coil", "hollow-sphere", "horseshoe", "ring-branch", "torus", "tube"),
-    *("two-cavities", "walnut", "y-branch"),
-)
-
 
 @pytest.mark.prove
 def test_prove_every_topology(proof):
     rows = []
-    for name in BODIES:
-        solid = LoftReconstructor().reconstruct(phantoms.make(name).contour_stack(sections=21))
+    for name, phantom in (next(item.phantoms()) for item in TOPOLOGY):
+        solid = LoftReconstructor().reconstruct(phantom.contour_stack(sections=21))
         loft = SurfaceGauss().integrate(solid)
         mesh = Tetwild().mesh(solid)
         found, validity = Fem().integrate(mesh), mesh.validity()

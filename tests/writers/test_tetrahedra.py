@@ -194,3 +194,33 @@ def test_a_mesh_that_is_not_whole_is_not_written(name):
         with pytest.raises(OutputError, match="cannot be written"):
             WRITERS[name].write(broken, stream)
         assert not stream.getvalue()
+
+
+@pytest.mark.prove
+def test_mphtxt_is_read_by_another_s_reader(tmp_path, proof):
+    """Fealpy's reader, when it is installed; second-order nodes in the order that FEconv publishes."""
+    reader = pytest.importorskip("fealpy.old.mesh.mphtxt_file_reader").MPHTxtFileReader
+    rows = []
+    for order, (tri, tet) in {1: ("tri", "tet"), 2: ("tri2", "tet2")}.items():
+        mesh = mesh_of(order)
+        found = reader(str(written("mphtxt", mesh, tmp_path)))
+        found.parse()
+        nodes, told = found.mesh["vertices"], found.mesh["element"]
+        faces = np.array(told[tri]["idx"]).reshape(-1, mesh.faces.shape[1])
+        elements = told[tet]["Element"]
+        if order == 2:
+            faces, elements = faces[:, [0, 1, 2, 3, 5, 4]], elements[:, [0, 1, 2, 3, 4, 6, 5, 7, 8, 9]]
+        volume = elements_volume(nodes, elements, 4) / elements_volume(mesh.nodes, mesh.elements, 4) - 1
+        area = faces_area(nodes, faces, 4) / faces_area(mesh.nodes, mesh.faces, 4) - 1
+        labels = {part["Label"]: part["dimension"] for part in found.geometry.values()}
+        assert labels == {"side": 2, "first-face": 2, "body": 3}
+        assert abs(volume) < 1e-14
+        assert abs(area) < 1e-14
+        named = ", ".join(f"{label} ({dimension}-D)" for label, dimension in labels.items())
+        rows.append((order, len(elements), f"{volume:.1e}", f"{area:.1e}", named))
+    proof(
+        "mphtxt",
+        "COMSOL mphtxt read back by fealpy 3.4.0's reader: against the mesh that was written",
+        ("order", "elements", "error of V", "error of S", "selections"),
+        rows,
+    )

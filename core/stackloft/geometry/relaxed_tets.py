@@ -33,13 +33,15 @@ BoolArray = NDArray[np.bool_]
 _ORDERS = {count: order for order, count in TET_NODES.items()}
 
 ENOUGH = 0.02
-"""Scaled Jacobian that inner nodes are moved for."""
+"""Scaled Jacobian that inner nodes are moved for where elements would turn over."""
+GOOD = 0.05
+"""Scaled Jacobian below which a bent element is poor, when it has lost half of what it had when straight."""
 ROUNDS = 4
 """Most rounds of pushing, each on a wider neighbourhood."""
 
 
 def relaxed(straight: FloatArray, placed: FloatArray, elements: IntArray, held: BoolArray) -> FloatArray:
-    """Return the nodes with the inner ones moved where elements would turn over.
+    """Return the nodes with the inner ones moved where elements would turn over or all but.
 
     Parameters
     ----------
@@ -54,11 +56,11 @@ def relaxed(straight: FloatArray, placed: FloatArray, elements: IntArray, held: 
     Returns
     -------
     (n, 3) array
-        `placed` itself when no element turns over. Whether one still does is for the caller to ask.
+        `placed` itself when no element is poor. Whether one is still turned over is for the caller to ask.
     """
     low = jacobian_bounds(placed[elements]).low
     if (low > 0.0).all():
-        return placed
+        return _lifted(straight, placed, elements, held)
     bent = _elastic(straight, placed, elements, held)
     if (jacobian_bounds(bent[elements]).low > 0.0).sum() < (low > 0.0).sum():
         bent = placed
@@ -66,8 +68,24 @@ def relaxed(straight: FloatArray, placed: FloatArray, elements: IntArray, held: 
         turned = jacobian_bounds(bent[elements]).low <= 0.0
         if not turned.any():
             break
-        bent = _pushed(bent, elements, held, turned, wider)
-    return bent
+        bent = _pushed(bent, elements, held, turned, wider, 2.0 * ENOUGH, 200)
+    return _lifted(straight, bent, elements, held)
+
+
+def _lifted(straight: FloatArray, nodes: FloatArray, elements: IntArray, held: BoolArray) -> FloatArray:
+    """Return the nodes with the inner ones moved away from elements that bending has all but turned over."""
+    had = jacobian_bounds(straight[elements]).low
+    low = jacobian_bounds(nodes[elements]).low
+    for wider in (1, 2):
+        poor = (low < GOOD) & (low < 0.5 * had)
+        if not poor.any() or low.min() <= 0.0:
+            break
+        moved = _pushed(nodes, elements, held, poor, wider, 2.0 * GOOD, 60)
+        after = jacobian_bounds(moved[elements]).low
+        if after.min() < low.min() or (after < GOOD).sum() >= (low < GOOD).sum():
+            break
+        nodes, low = moved, after
+    return nodes
 
 
 def _elastic(straight: FloatArray, placed: FloatArray, elements: IntArray, held: BoolArray) -> FloatArray:
@@ -98,9 +116,15 @@ def _stiffness(order: int) -> FloatArray:
 
 
 def _pushed(
-    nodes: FloatArray, elements: IntArray, held: BoolArray, turned: BoolArray, wider: int
+    nodes: FloatArray,
+    elements: IntArray,
+    held: BoolArray,
+    turned: BoolArray,
+    wider: int,
+    wanted: float,
+    steps: int,
 ) -> FloatArray:
-    """Return the nodes after those near turned elements have been moved to make all coefficients positive."""
+    """Return the nodes after those near turned elements have been moved to lift coefficients to `wanted`."""
     near = np.zeros(len(nodes), dtype=bool)
     chosen = turned
     for _ in range(wider):
@@ -117,16 +141,18 @@ def _pushed(
     def cost(x: FloatArray) -> tuple[float, FloatArray]:
         moved = nodes.copy()
         moved[free] = x.reshape(-1, 3) * size
-        value, slope = _shortfall(moved, part, scale)
+        value, slope = _shortfall(moved, part, scale, wanted)
         return value, (slope[free] * size).ravel()
 
-    found = minimize(cost, start / size, jac=True, method="L-BFGS-B", options={"maxiter": 200})
+    found = minimize(cost, start / size, jac=True, method="L-BFGS-B", options={"maxiter": steps})
     result = nodes.copy()
     result[free] = found.x.reshape(-1, 3) * size
     return result
 
 
-def _shortfall(nodes: FloatArray, elements: IntArray, scale: FloatArray) -> tuple[float, FloatArray]:
+def _shortfall(
+    nodes: FloatArray, elements: IntArray, scale: FloatArray, wanted: float
+) -> tuple[float, FloatArray]:
     """Return Σ max(0, wanted − coefficient)² over all Bézier coefficients of det J, and its slope, (n, 3)."""
     order = _ORDERS[elements.shape[1]]
     degree = 3 * (order - 1)
@@ -135,7 +161,7 @@ def _shortfall(nodes: FloatArray, elements: IntArray, scale: FloatArray) -> tupl
     minors = (np.cross(b, c), np.cross(c, a), np.cross(a, b))
     inverse = bernstein_inverse(degree)
     coefficients = (a * minors[0]).sum(axis=2) @ inverse.T * scale[:, None]
-    lack = np.maximum(2.0 * ENOUGH - coefficients, 0.0)
+    lack = np.maximum(wanted - coefficients, 0.0)
     weight = -2.0 * (lack * scale[:, None]) @ inverse
     gradient = sum(np.einsum("mg,mgd,gi->mid", weight, minors[k], slopes[k]) for k in range(3))
     total = np.zeros_like(nodes)

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from stackloft.geometry.exact_curves import CurveSet
 from stackloft.geometry.exact_surface import ExactSurface
 from stackloft.geometry.surface_regions import SurfaceRegions, surface_regions
-from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.tri_mesh import TriMesh
 from stackloft_plugins.meshers.closest_triangle import ClosestTriangle
 
@@ -40,6 +40,8 @@ class BoundaryTarget:
     patches: FloatArray | None
     """(k, 4, 4, 3) mm, when the triangles are a tessellation of patches and plane faces"""
     near: ClosestTriangle
+    flat: BoolArray
+    """(t,) triangles of plane ends: no patch lies there"""
     _regions: dict[int, Projection] = field(default_factory=dict)
     _edges: dict[tuple[int, int], Projection | None] = field(default_factory=dict)
 
@@ -66,17 +68,19 @@ class BoundaryTarget:
         return np.asarray(self.surface.vertices[self.regions.corners])
 
     def _region(self, number: int) -> Projection:
-        mine = self.surface.faces[self.regions.region == number]
+        own = self.regions.region == number
+        mine = self.surface.faces[own]
         if self.regions.plane[number]:
             return _plane(self.surface.vertices, mine)
-        if self.patches is not None:
-            whole = ExactSurface(self.patches)
-            middles = self.surface.vertices[mine].mean(axis=1)
-            used = np.unique(whole.project(middles).patch)
-            exact = ExactSurface(self.patches[used])
+        if self.patches is None:
+            found = ClosestTriangle(self.surface.vertices, mine)
+            return lambda points: found.project(points)[0]
+        bent = self.surface.faces[own & ~self.flat]
+        used = np.unique(ExactSurface(self.patches).project(self.surface.vertices[bent].mean(axis=1)).patch)
+        exact = ExactSurface(self.patches[used])
+        if len(bent) == len(mine):
             return lambda points: exact.project(points).points
-        found = ClosestTriangle(self.surface.vertices, mine)
-        return lambda points: found.project(points)[0]
+        return _nearer(exact, ClosestTriangle(self.surface.vertices, self.surface.faces[own & self.flat]))
 
     def _edge(self, key: tuple[int, int]) -> Projection | None:
         mine = self.regions.edges[(self.regions.sides == key).all(axis=1)]
@@ -110,7 +114,11 @@ class BoundaryTarget:
         return curves if curves.project(points).distance.max() <= tolerance else None
 
 
-def boundary_target(surface: TriMesh, patches: FloatArray | None = None) -> BoundaryTarget:
+def boundary_target(
+    surface: TriMesh,
+    patches: FloatArray | None = None,
+    ends: tuple[tuple[FloatArray, FloatArray], ...] = (),
+) -> BoundaryTarget:
     """Return what a mesh of the body within `surface` has to fit.
 
     Parameters
@@ -119,12 +127,29 @@ def boundary_target(surface: TriMesh, patches: FloatArray | None = None) -> Boun
         Closed and oriented.
     patches : (k, 4, 4, 3) array, optional
         Where the triangles come from, in the same millimetres.
+    ends : pairs of (3,) arrays
+        Point and unit normal of each plane that closes a shell of patches.
     """
     least = 0.0 if patches is None else _CRUMB  # where tubes join, a tessellation has odd triangles
     regions = surface_regions(surface.vertices, surface.faces, least=least)
     if regions.count > MANY:
         regions = surface_regions(surface.vertices, surface.faces, angle=180.0)
-    return BoundaryTarget(surface, regions, patches, ClosestTriangle(surface.vertices, surface.faces))
+    flat = np.zeros(len(surface.faces), dtype=bool)
+    slack = _SAME * float(np.ptp(surface.vertices, axis=0).max())
+    for point, normal in ends:
+        flat |= (np.abs((surface.vertices - point) @ normal) <= slack)[surface.faces].all(axis=1)
+    return BoundaryTarget(surface, regions, patches, ClosestTriangle(surface.vertices, surface.faces), flat)
+
+
+def _nearer(exact: ExactSurface, cap: ClosestTriangle) -> Projection:
+    """Return the projection on patches or the plane end they run into, whichever is nearer."""
+
+    def project(points: FloatArray) -> FloatArray:
+        on_patch = exact.project(points)
+        on_cap, _, distance = cap.project(points)
+        return np.where((distance < on_patch.distance)[:, None], on_cap, on_patch.points)
+
+    return project
 
 
 def _plane(vertices: FloatArray, faces: IntArray) -> Projection:

@@ -8,15 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from stackloft.contracts.options import option
-from stackloft.geometry.closed_mesh import mesh_integrals
-from stackloft.geometry.patch_integrals import solid_integrals
+from stackloft.geometry.bisected_tets import bisected, edges_in_the_way
 from stackloft.geometry.raised_tets import raised
 from stackloft.geometry.tet_boundary import boundary_faces
 from stackloft.geometry.tet_integrals import elements_volume, faces_area
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import LoftedSolid
-from stackloft.model.lofted_solid_check import check_lofted_solid
 from stackloft.model.notices import Notice
 from stackloft.model.tet_mesh import TetMesh
 from stackloft.model.tet_mesh_check import where
@@ -26,6 +24,7 @@ from stackloft_plugins.meshers.boundary_target import BoundaryTarget, boundary_t
 from stackloft_plugins.meshers.settling import settled
 from stackloft_plugins.meshers.sizing_field import sizing_field
 from stackloft_plugins.meshers.snapping import corners_taken, regions_of_faces, snapped
+from stackloft_plugins.meshers.tetwild_body import Body, body_of
 from stackloft_plugins.meshers.tetwild_call import WHERE, Wanted, check_body, tetrahedra
 from stackloft_plugins.worker import Limits
 
@@ -40,6 +39,8 @@ _FINER = (1.0, 0.6, 0.3)
 _EXACT = 1e-9
 """Relative difference allowed where every region is plane: rounding."""
 _REGULAR = 0.118
+_CUTS = 4
+"""Most times that edges which keep faces from bending are cut."""
 
 
 @dataclass(frozen=True)
@@ -84,11 +85,11 @@ class Tetwild:
             A surface that is open, flat, inside out or not finite; an envelope that is too thin; pytetwild
             crashed, took too long or too much memory; elements that stay turned over.
         """
-        body = _body(solid)
+        body = body_of(solid)
         wanted = self._wanted(body)
         surface = body.surface(wanted.epsilon)
         check_body(surface)
-        target = boundary_target(surface, body.patches)
+        target = boundary_target(surface, body.patches, body.ends())
         faults = []
         for part in _FINER:
             try:
@@ -101,7 +102,7 @@ class Tetwild:
                              fix="give a smaller max_element_size, or order 1")  # fmt: skip
         return best.mesh
 
-    def _wanted(self, body: _Body) -> Wanted:
+    def _wanted(self, body: Body) -> Wanted:
         diagonal, volume, area = body.diagonal, body.figures[0], body.figures[1]
         size = self.max_element_size
         if size is None:
@@ -111,42 +112,12 @@ class Tetwild:
             epsilon = min(_EPSILON * diagonal, _SHARE * volume / area)
         return Wanted(float(size), float(epsilon), self.quality, Limits(self.time_limit, self.memory_limit))
 
-    def _fitted(self, target: BoundaryTarget, body: _Body, wanted: Wanted) -> TetMesh:
+    def _fitted(self, target: BoundaryTarget, body: Body, wanted: Wanted) -> TetMesh:
         field = None
         if self.curvature_factor is not None:
             field = sizing_field(target.surface, target.regions, wanted.size, self.curvature_factor)
         nodes, elements = tetrahedra(target.surface, wanted, field)
         return _placed(nodes, elements, target, body, self.order, wanted.epsilon)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Body:
-    """What is to be filled."""
-
-    given: LoftedSolid | TriMesh
-    patches: FloatArray | None
-    figures: tuple[float, float]
-    """mm³, mm²: exact"""
-    diagonal: float
-    """mm"""
-
-    def surface(self, epsilon: float) -> TriMesh:
-        return self.given if isinstance(self.given, TriMesh) else self.given.tessellate(epsilon)
-
-
-def _body(solid: LoftedSolid | TriMesh) -> _Body:
-    if isinstance(solid, TriMesh):
-        check_body(solid)
-        box = np.ptp(solid.vertices[solid.faces.ravel()], axis=0)
-        return _Body(solid, None, mesh_integrals(solid.vertices, solid.faces), float(np.linalg.norm(box)))
-    check_lofted_solid(solid)
-    own = np.concatenate([shell.patches.reshape(-1, 4, 4, 3) for shell in solid.shells])
-    patches = np.asarray(own @ solid.affine[:3, :3].T + solid.affine[:3, 3])
-    parts = np.array([solid_integrals(s.patches, s.face_signs, solid.affine) for s in solid.shells])
-    volume, area = (float(total) for total in parts.sum(axis=0))
-    return _Body(
-        solid, patches, (volume, area), float(np.linalg.norm(np.ptp(patches.reshape(-1, 3), axis=0)))
-    )
 
 
 class _UnfitError(Exception):
@@ -159,7 +130,7 @@ class _UnfitError(Exception):
 
 
 def _placed(
-    nodes: FloatArray, elements: IntArray, target: BoundaryTarget, body: _Body, order: int, reach: float
+    nodes: FloatArray, elements: IntArray, target: BoundaryTarget, body: Body, order: int, reach: float
 ) -> TetMesh:
     """Return the mesh with its boundary on the target, at `order`."""
     try:
@@ -173,8 +144,15 @@ def _placed(
 
 
 def _on_target(
-    nodes: FloatArray, elements: IntArray, target: BoundaryTarget, body: _Body, order: int, reach: float
+    nodes: FloatArray, elements: IntArray, target: BoundaryTarget, body: Body, order: int, reach: float
 ) -> TetMesh:
+    for _ in range(_CUTS):
+        flat = boundary_faces(elements)
+        regions = regions_of_faces(nodes, flat, target, 2.0 * reach)
+        cut = edges_in_the_way(nodes, elements, flat, regions)
+        if not len(cut):
+            break
+        nodes, elements = bisected(nodes, elements, cut)
     flat = boundary_faces(elements)
     regions = regions_of_faces(nodes, flat, target, 2.0 * reach)
     rim = np.unique(flat)
@@ -199,7 +177,7 @@ def _judged(
     faces: IntArray,
     regions: IntArray,
     target: BoundaryTarget,
-    body: _Body,
+    body: Body,
 ) -> TetMesh:
     """Return the mesh with how far it is off; raise when elements turn over or plane faces are not met."""
     groups, names = boundary_groups(regions, target, body.given)
