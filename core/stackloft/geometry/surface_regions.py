@@ -13,6 +13,7 @@ r"""A triangle surface taken apart at its sharp edges: regions, the edges betwee
 from __future__ import annotations
 
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,19 +117,40 @@ def _without_crumbs(
     region: IntArray, pairs: IntArray, lengths: FloatArray, areas: FloatArray, least: float
 ) -> IntArray:
     """Return the regions with each that is smaller than `least` in the one it has the longest border with."""
-    result = region.copy()
-    while True:
-        size = np.bincount(result, areas)
-        small = np.flatnonzero((size < least * areas.sum()) & (np.bincount(result) > 0))
-        sides = result[pairs]
-        border = sides[:, 0] != sides[:, 1]
-        small = small[np.isin(small, sides[border])]
-        if not len(small):
-            return np.unique(result, return_inverse=True)[1].reshape(-1).astype(np.int64)
-        crumb = small[np.argmin(size[small])]
-        mine = border & (sides == crumb).any(axis=1)
-        other = np.where(sides[mine, 0] == crumb, sides[mine, 1], sides[mine, 0])
-        result[result == crumb] = np.argmax(np.bincount(other, lengths[mine]))
+    size = np.bincount(region, areas)
+    enough = least * float(areas.sum())
+    borders = _borders(region[pairs], lengths, len(size))
+    heir = np.arange(len(size))
+    waiting = [(float(size[k]), int(k)) for k in np.flatnonzero(size < enough)]
+    heapify(waiting)
+    while waiting:
+        own, crumb = heappop(waiting)
+        if heir[crumb] != crumb or own != size[crumb] or not borders[crumb]:
+            continue
+        into = max(borders[crumb], key=lambda k: (borders[crumb][k], -k))
+        heir[crumb] = into
+        size[into] += own
+        for other, length in borders[crumb].items():
+            del borders[other][crumb]
+            if other != into:
+                borders[other][into] = borders[into][other] = borders[into].get(other, 0.0) + length
+        borders[crumb] = {}
+        if size[into] < enough:
+            heappush(waiting, (float(size[into]), into))
+    while (heir != heir[heir]).any():
+        heir = heir[heir]
+    return np.unique(heir[region], return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _borders(sides: IntArray, lengths: FloatArray, count: int) -> list[dict[int, float]]:
+    """Return the length of every region's border with each of its neighbours."""
+    apart = sides[:, 0] != sides[:, 1]
+    between, which = np.unique(np.sort(sides[apart], axis=1), axis=0, return_inverse=True)
+    total = np.bincount(which.ravel(), lengths[apart], len(between))
+    borders: list[dict[int, float]] = [{} for _ in range(count)]
+    for (a, b), length in zip(between.tolist(), total.tolist(), strict=True):
+        borders[a][b] = borders[b][a] = length
+    return borders
 
 
 def _lengths(vertices: FloatArray, edges: IntArray) -> FloatArray:
