@@ -31,8 +31,9 @@ FINE = 100
 """Sections, and pixels of radius, above which the shift is less than 1e-4 of V: not worth its time."""
 MOST = 64
 """Points on a loop at which the shift is worked out."""
-FURTHEST = 0.25
-"""Pixels: the contour is never moved further; the formula is for surfaces that bend little within a voxel."""
+FURTHEST = 0.15
+"""Pixels: a shift beyond this is less and less believed, one beyond twice this not at all: there the surface
+is not resolved, and the formula is for one that bends little within a voxel."""
 _BESIDE = 2.5  # pixels from a corner within which curvature means nothing
 _BLURRED, _BLURRING = 2.3, 0.6  # pixels over which a slab spreads the edge, for `_box`
 
@@ -116,7 +117,7 @@ class _Slabs:
         twist = (np.roll(slope, -1) - np.roll(slope, 1)) / outline.apart
         surface = SurfaceShape(outline.normals, slope, bend, twist, outline.curvature)
         shift = half_way_shift(surface, self._box(index, surface))
-        shift = np.clip(shift, -FURTHEST * pixel, FURTHEST * pixel)
+        shift *= np.clip(2.0 - np.abs(shift) / (FURTHEST * pixel), 0.0, 1.0)
         nearest = cKDTree(outline.points).query(loop.points)[1]
         moved = loop.points - (shift[:, None] * outline.normals)[nearest]
         return replace(loop, points=frozen_floats(moved))

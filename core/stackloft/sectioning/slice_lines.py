@@ -36,6 +36,8 @@ class TraceRules:
     """Holes filled below this together are not worth a notice."""
     fewest_pixels: float = 9.0
     """px²: an object smaller than this is no body."""
+    fewest_beside: float = 16.0
+    """px²: another object smaller than this is dropped: too few vertices for a curve that can be joined."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,7 +153,8 @@ def _objects(lines: list[Line], rules: TraceRules, name: str) -> tuple[list[Line
             fix="give --set segmenter.threshold=LEVEL, or set skip = true for it in stack.toml",
         )
     kept = [line for line in outlines if line.area >= rules.branch * largest]
-    return kept, [line for line in outlines if rules.debris * largest <= line.area < rules.branch * largest]
+    least = max(rules.debris * largest, rules.fewest_beside)
+    return kept, [line for line in outlines if least <= line.area < rules.branch * largest]
 
 
 def _holes(kept: list[Line], grid: Grid, rules: TraceRules) -> tuple[list[Line], list[Line]]:

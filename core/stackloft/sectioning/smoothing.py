@@ -14,18 +14,26 @@ import numpy as np
 from scipy.interpolate import make_lsq_spline
 
 from stackloft.geometry.shoelace import polygon_area
+from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.geometry.uniform_spline import fit_uniform_all
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints, read_only
 from stackloft.model.contour_stack import Loop
 
-KNOT_SPACINGS = (6.0, 4.0, 3.0)
-"""Pixels between knots: the widest that keeps the loop's area."""
+KNOT_SPACING = 6.0
+"""Pixels between knots."""
+CLOSER = (4.0, 3.0)
+"""Likewise where these would cut tips short."""
+WIDER = (9.0, 13.0, 19.0)
+"""Likewise where the loop is so jagged that the spline would cross itself."""
+FEW = 600
+"""Vertices up to which a loop's knots are chosen: on larger ones no tip is small enough to matter."""
 AREA_KEPT = (0.1, 2e-4)
 """Pixels² and fraction of the loop's area: the larger of the two is what smoothing may change the area by."""
 STEP = 1.5
 """Pixels between the vertices returned."""
 _DEGREE = 3
 _OVERLAP = 10  # spans by which a closed loop is wrapped; what happens at their ends is not felt within
+_SHARP, _BACK = 0.6, -0.4  # cosines: where a loop turns by 53° and 114° or more at a vertex
 _FEWEST = 2  # vertices in each span, for a fit on even knots
 _SHORTEST = 12  # vertices; a loop of fewer is not smoothed
 _TOGETHER = 8  # loops fitted at once, so that what is in between stays in the processor's cache
@@ -127,18 +135,46 @@ class _Wrapped:
 
 
 def _all_smooth_closed(loops: Sequence[FloatArray], pixel: float) -> list[FloatArray]:
-    """Return closed loops smoothed, the knots of each close enough that no tip of it is cut short."""
-    areas = [_curve_area(points) for points in loops]
+    """Return closed loops smoothed, their knots chosen one by one where the usual ones do not serve."""
+    usual = _fitted_with(loops, KNOT_SPACING, pixel)
+    return [
+        smooth if len(points) > FEW else _with_chosen_knots(points, smooth, pixel)
+        for points, smooth in zip(loops, usual, strict=True)
+    ]
+
+
+def _fitted_with(loops: Sequence[FloatArray], spacing: float, pixel: float) -> list[FloatArray]:
+    return _all_fitted([_Wrapped.of(points, spacing * pixel, STEP * pixel) for points in loops])
+
+
+def _with_chosen_knots(points: FloatArray, usual: FloatArray, pixel: float) -> FloatArray:
+    """Return a loop smoothed so that no tip of it is cut short, and it does not cross itself."""
+    if _entangled(usual):
+        wider = (_fitted_with([points], spacing, pixel)[0] for spacing in WIDER)
+        return next((smooth for smooth in wider if not _entangled(smooth)), usual)
+    area = _curve_area(points)
     least, share = AREA_KEPT
-    smoothed = list(loops)
-    left = list(range(len(loops)))
-    for spacing in KNOT_SPACINGS:
-        fitted = _all_fitted([_Wrapped.of(loops[k], spacing * pixel, STEP * pixel) for k in left])
-        for k, smooth in zip(left, fitted, strict=True):
-            smoothed[k] = smooth
-        allowed = [max(least * pixel**2, share * abs(area)) for area in areas]
-        left = [k for k in left if abs(_curve_area(smoothed[k]) - areas[k]) > allowed[k]]
-    return smoothed
+    allowed = max(least * pixel**2, share * abs(area))
+    best, least_off = usual, abs(_curve_area(usual) - area)
+    for spacing in CLOSER:
+        if least_off <= allowed:
+            break
+        smooth = _fitted_with([points], spacing, pixel)[0]
+        off = abs(_curve_area(smooth) - area)
+        if off < least_off and not _entangled(smooth):
+            best, least_off = smooth, off
+    return best
+
+
+def _entangled(points: FloatArray) -> bool:
+    """Return whether a smooth loop crosses itself, or turns back on itself from one vertex to the next."""
+    step = np.roll(points, -1, axis=0) - points
+    following = np.roll(step, -1, axis=0)
+    length = np.maximum(
+        np.linalg.norm(step, axis=1) * np.linalg.norm(following, axis=1), np.finfo(float).tiny
+    )
+    sharpest = float(((step * following).sum(axis=1) / length).min())
+    return sharpest < _BACK or (sharpest < _SHARP and bool(crosses_itself(points[None])[0]))
 
 
 def _curve_area(points: FloatArray) -> float:
@@ -177,7 +213,7 @@ def _smooth_arc(points: FloatArray, pixel: float) -> FloatArray:
     samples = np.linspace(0.0, total, count + 1)
     if len(points) < 8:
         return np.column_stack([np.interp(samples, t, axis) for axis in points.T])
-    spans = max(1, _at_most(total / (KNOT_SPACINGS[0] * pixel), len(points) // 2))
+    spans = max(1, _at_most(total / (KNOT_SPACING * pixel), len(points) // 2))
     knots = np.linspace(0.0, total, spans + 1)[1:-1]
     fitted = _fit(t, points, knots, samples, pinned=True)
     fitted[0], fitted[-1] = points[0], points[-1]
