@@ -5,8 +5,8 @@ r"""Pictures kept between finding the bodies and measuring one, so that no slice
     +----------------+      whole: where bodies are, with a margin, as it was decoded;
     | . . . . . . .  |      dots: every fourth pixel of the rest, for people's thumbnails
     | . +-------+ .  |
-    | . | body  | .  |      above BUDGET bytes nothing more is kept, and the slice is decoded again
-    | . +-------+ .  |
+    | . | body  | .  |      where the window is half of the slice, all of it is kept;
+    | . +-------+ .  |      above BUDGET bytes nothing more is, and the slice is decoded again
     +----------------+
 
 Which pieces are the body is known only when all slices have been seen.
@@ -57,6 +57,11 @@ def _widened(coarse: Picture) -> Picture:
     return coarse.repeat(STRIDE, axis=0).repeat(STRIDE, axis=1)
 
 
+def _is_own(picture: Picture) -> bool:
+    """Return whether keeping a picture keeps nothing but it."""
+    return picture.base is None or getattr(picture.base, "nbytes", 0) == picture.nbytes
+
+
 class KeptSlices:
     """A ``decode`` that answers from memory where it can.
 
@@ -80,12 +85,13 @@ class KeptSlices:
     def keep(self, number: int, picture: Picture, window: Window) -> None:
         """Keep what matters of a slice, unless too much has been kept already."""
         inside = picture[window]
-        if inside.nbytes > self._budget:
+        whole = 2 * inside.nbytes >= picture.nbytes and _is_own(picture)
+        taken = picture.nbytes if whole else inside.nbytes + picture.nbytes // STRIDE**2
+        if taken > self._budget:
             return
-        self._budget -= inside.nbytes + picture.nbytes // STRIDE**2
-        part = np.array(inside) if inside.nbytes < picture.nbytes else picture
-        coarse = np.array(picture[::STRIDE, ::STRIDE])
-        self._kept[number] = _Kept(part, window, coarse, picture.shape)
+        self._budget -= taken
+        coarse = picture[:0, :0] if whole else np.array(picture[::STRIDE, ::STRIDE])
+        self._kept[number] = _Kept(picture if whole else np.array(inside), window, coarse, picture.shape)
 
     def __call__(self, number: int) -> Picture:
         """Return the slice as it was kept, or decode it again."""
