@@ -30,13 +30,32 @@ def half_axes(polygon: FloatArray) -> FloatArray:
     >>> half_axes(9 + np.column_stack([3 * np.cos(t), 2 * np.sin(t)])).round(4).tolist()
     [3.0, 2.0]
     """
-    start = polygon - polygon.mean(axis=0)
+    matrix, _ = central_moments(polygon)
+    axes: FloatArray = 2 * np.sqrt(np.clip(np.linalg.eigvalsh(matrix)[::-1], 0, None))
+    return axes
+
+
+def central_moments(polygon: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance of the points within, (2, 2), and their centre, (2).
+
+    Parameters
+    ----------
+    polygon : array (k, 2)
+        Simple; in any unit.
+
+    Examples
+    --------
+    >>> matrix, centre = central_moments(np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 12.0], [0.0, 12.0]]))
+    >>> matrix.round(9).tolist(), centre.tolist()
+    ([[3.0, 0.0], [0.0, 12.0]], [3.0, 6.0])
+    """
+    middle = polygon.mean(axis=0)
+    start = polygon - middle
     end = np.roll(start, -1, axis=0)
     cross = start[:, 0] * end[:, 1] - end[:, 0] * start[:, 1]
     area = cross.sum() / 2
     centre = ((start + end) * cross[:, None]).sum(axis=0) / (6 * area)
     sums = np.einsum("k,ki,kj->ij", cross, start, start) + np.einsum("k,ki,kj->ij", cross, end, end)
     mixed = np.einsum("k,ki,kj->ij", cross, start, end)
-    moment = (sums + 0.5 * (mixed + mixed.T)) / (12 * area) - np.outer(centre, centre)
-    axes: FloatArray = 2 * np.sqrt(np.clip(np.linalg.eigvalsh(moment)[::-1], 0, None))
-    return axes
+    matrix = (sums + 0.5 * (mixed + mixed.T)) / (12 * area) - np.outer(centre, centre)
+    return matrix, middle + centre

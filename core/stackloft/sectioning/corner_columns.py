@@ -67,21 +67,22 @@ def _extend(
     active: list[dict[int, float]], section: int, marks: FloatArray, chains: list[dict[int, float]]
 ) -> list[dict[int, float]]:
     """Append the section's corners to the nearest active chains, or begin new ones."""
+    away = np.array([[abs(_wrapped(mark - chain[section - 1])) for chain in active] for mark in marks])
+    following: dict[int, dict[int, float]] = {}
     taken: set[int] = set()
-    following: list[dict[int, float]] = []
-    for mark in marks:
-        away = [abs(_wrapped(mark - chain[section - 1])) for chain in active]
-        order = [k for k in np.argsort(away) if k not in taken and away[k] < REACH]
-        if order:
-            chain = active[order[0]]
-            taken.add(int(order[0]))
-            before = chain[section - 1]
-            chain[section] = before + _wrapped(mark - before)
-        else:
-            chain = {section: float(mark)}
-            chains.append(chain)
-        following.append(chain)
-    return following
+    for flat in np.argsort(away, axis=None, kind="stable"):  # the closest pair first: a joint's pin beside
+        i, k = divmod(int(flat), len(active))  # a corner must not take its column
+        if i in following or k in taken or away[i, k] >= REACH:
+            continue
+        taken.add(k)
+        before = active[k][section - 1]
+        active[k][section] = before + _wrapped(float(marks[i]) - before)
+        following[i] = active[k]
+    for i, mark in enumerate(marks):
+        if i not in following:
+            following[i] = {section: float(mark)}
+            chains.append(following[i])
+    return [following[i] for i in range(len(marks))]
 
 
 def _wrapped(difference: float) -> float:

@@ -39,13 +39,14 @@ def make_level(
     """
     regions = section_regions(polygons, name)
     turned = [
-        (loop, p) if (polygon_area(p) < 0.0) == bool(hole) else (_reversed(loop), p[::-1])
+        (loop, p) if (polygon_area(p) < 0.0) == bool(hole) else (reversed_loop(loop), p[::-1])
         for loop, p, hole in zip(loops, polygons, regions.holes, strict=True)
     ]
     return Level(z, tuple(t[0] for t in turned), tuple(t[1] for t in turned), name, section)
 
 
-def _reversed(loop: Loop) -> Loop:
+def reversed_loop(loop: Loop) -> Loop:
+    """Return the loop run the other way."""
     return Loop(loop.points[::-1], np.sort(len(loop.points) - 1 - loop.corners), loop.hole)
 
 

@@ -61,15 +61,19 @@ def roof_levels(
     x, y = plane_grid(polygons)
     field = _across_ring(x, y, polygons) if len(polygons) == RING else signed_distance(x, y, polygons)
     most = float(field.max())
-    slope = _slope_at_start(thickness, length)
     levels = []
     for turn in TURNS:
         part = float(np.cos(turn))
-        distance = length * _fraction(part**2, slope)
+        distance = closing_depth(part, thickness, length)
         loops = zero_lines(field - most * (1.0 - part), x, y)
         if loops:
             levels.append((distance, loops))
     return levels
+
+
+def closing_depth(part: float, thickness: Thickness, length: float) -> float:
+    """Return how far beyond the outermost section the thickness is `part` of what it is there, mm."""
+    return length * _fraction(part**2, _slope_at_start(thickness, length))
 
 
 def _across_ring(x: FloatArray, y: FloatArray, polygons: list[FloatArray]) -> FloatArray:

@@ -16,14 +16,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, frozen_ints
+from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.loop_links import bounding_box
 from stackloft.sectioning.marching_squares import closed_lines
+from stackloft.sectioning.traced_corners import with_corners
 
 GRID = 160
 """Grid steps across the larger side of the loops' box."""
@@ -113,6 +116,11 @@ def plane_grid(loops: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
 
 def zero_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArray]:
     """Return the closed lines on which a field on a grid is zero, evenly spaced vertices, (k, 2) mm each."""
+    return [evened(line, SIDES) for line in grid_lines(field, x, y)]
+
+
+def grid_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArray]:
+    """Return the closed lines on which a field on a grid is zero, a vertex on every grid side, (k, 2) mm."""
     inside = field > 0.0
     inside[[0, -1]] = False
     inside[:, [0, -1]] = False
@@ -126,17 +134,37 @@ def zero_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArr
         step = x[1] - x[0]
         points = np.column_stack([x[column] + t * step * ~line.down, y[row] + t * step * line.down])
         if abs(polygon_area(points)) > LEAST**2 * size:
-            loops.append(_evened(points))
+            loops.append(points)
     return loops
 
 
-def _evened(points: FloatArray) -> FloatArray:
-    """Return the polygon with evenly spaced vertices."""
-    closed = np.concatenate([points, points[:1]])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
-    count = min(SIDES, max(24, len(points) // 2))
+def evened(points: FloatArray, most: int) -> FloatArray:
+    """Return a closed polygon with evenly spaced vertices, half as many as it has, at most `most`."""
+    return _even_vertices(np.concatenate([points, points[:1]]), min(most, max(24, len(points) // 2)))
+
+
+def evened_loop(points: FloatArray, pixel: float, most: int) -> Loop:
+    """Return a line traced on a grid as a loop, its corners put back, the vertices between evenly spaced."""
+    loop = with_corners(Loop(points), pixel)
+    if not len(loop.corners):
+        return Loop(evened(points, most))
+    count = min(most, max(24, len(points) // 2))
+    turned = np.roll(loop.points, -int(loop.corners[0]), axis=0)
+    ends = [*(loop.corners - loop.corners[0]).tolist(), len(turned)]
+    closed = np.concatenate([turned, turned[:1]])
+    pieces = [closed[a : b + 1] for a, b in pairwise(ends)]
+    lengths = [float(np.linalg.norm(np.diff(piece, axis=0), axis=1).sum()) for piece in pieces]
+    sides = [max(2, round(count * length / sum(lengths))) for length in lengths]
+    vertices = [_even_vertices(piece, n) for piece, n in zip(pieces, sides, strict=True)]
+    corners = np.concatenate([[0], np.cumsum(sides)[:-1]])
+    return Loop(np.concatenate(vertices), frozen_ints(corners))
+
+
+def _even_vertices(line: FloatArray, count: int) -> FloatArray:
+    """Return a line's first `count` of `count + 1` evenly spaced vertices."""
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     wanted = arc[-1] * np.arange(count) / count
-    return np.column_stack([np.interp(wanted, arc, closed[:, k]) for k in (0, 1)])
+    return np.column_stack([np.interp(wanted, arc, line[:, k]) for k in (0, 1)])
 
 
 def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:

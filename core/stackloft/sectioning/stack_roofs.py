@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from stackloft.model.ends import End, EndKind
 from stackloft.model.measurement import EndReport
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.levels import Level, make_level
+from stackloft.sectioning.line_roof import LineEnd, line_end, moved
 from stackloft.sectioning.loop_links import link_loops
 from stackloft.sectioning.roof import Thickness, half_thickness, roof_levels
 from stackloft.sectioning.section_regions import section_regions
@@ -73,17 +75,24 @@ class Roofs:
 
 
 def roofs_of(levels: list[Level], side: Side) -> Roofs:
-    """Return the levels that close rings and strongly bent pieces over their ridges."""
+    """Return the levels that close rings, strongly bent pieces and straight rims over their ridges."""
     inward = levels[::-1] if side.at_last else levels
     outward = 1.0 if side.at_last else -1.0
     outermost = inward[0]
     regions = section_regions(list(outermost.polygons), outermost.name)
-    found: list[tuple[float, list[FloatArray]]] = []
+    found: list[_Put] = []
     planned = []
     for k in np.flatnonzero(~regions.holes):
         piece = regions.within(int(k))
         followed = _followed(inward, int(k))
+        area = sum(polygon_area(p) for p in piece)
         if len(piece) == 1 and _has_pole(followed):
+            line = line_end([(z, polygons[0]) for z, polygons in followed])
+            if line is not None:
+                end = side.plan(np.array([z for z, _ in followed]), line.across)
+                if end.kind is EndKind.ROUND:
+                    found += _line_levels(line, end.length, outermost, int(k))
+                    planned.append(Roof(end, area))
             continue
         thickness = Thickness(
             np.array([half_thickness(p) for _, p in followed]),
@@ -92,16 +101,32 @@ def roofs_of(levels: list[Level], side: Side) -> Roofs:
         end = side.plan(np.array([z for z, _ in followed]), thickness.half**2)
         if end.kind in {EndKind.FACE, EndKind.FLAT}:
             continue
-        found += roof_levels(piece, thickness, end.length)
-        planned.append(Roof(end, sum(polygon_area(p) for p in piece)))
+        found += [_Put(d, [Loop(p) for p in ps], ps) for d, ps in roof_levels(piece, thickness, end.length)]
+        planned.append(Roof(end, area))
     result = []
-    for number, distance in enumerate(sorted({round(d, 12) for d, _ in found}), start=1):
-        loops = [p for d, ps in found if round(d, 12) == distance for p in ps]
+    for number, distance in enumerate(sorted({round(put.distance, 12) for put in found}), start=1):
+        here = [put for put in found if round(put.distance, 12) == distance]
+        loops, polygons = [loop for p in here for loop in p.loops], [q for p in here for q in p.polygons]
         name = f"roof {number} beyond {outermost.name}"
-        result.append(
-            make_level(outermost.z + outward * distance, [Loop(p) for p in loops], loops, name, None)
-        )
+        result.append(make_level(outermost.z + outward * distance, loops, polygons, name, None))
     return Roofs(result, planned)
+
+
+class _Put(NamedTuple):
+    """Loops of one piece put in beyond the outermost section."""
+
+    distance: float
+    """mm"""
+    loops: list[Loop]
+    polygons: list[FloatArray]
+
+
+def _line_levels(line: LineEnd, length: float, outermost: Level, k: int) -> list[_Put]:
+    loop, polygon = outermost.loops[k], Loop(outermost.polygons[k])
+    return [
+        _Put(distance, [moved(loop, matrix, shift)], [moved(polygon, matrix, shift).points])
+        for distance, matrix, shift in line.levels(length)
+    ]
 
 
 def _followed(inward: list[Level], loop: int) -> list[tuple[float, list[FloatArray]]]:

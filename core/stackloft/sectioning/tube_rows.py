@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from stackloft.geometry.bridge_edges import Part
-from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray, frozen_ints
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.levels import Level, is_hole
 
+SAME = 1e-9
+"""Points closer than this fraction of the loop are one."""
 SHORT_CHORD = 0.02
 """A cut shorter than this fraction of the loop is drawn as one corner."""
 
@@ -62,13 +66,24 @@ def pinned_row(row: Row, whole: Part) -> Row:
     """Return the row with its corners at the joint's pins, on the joint's own polygon."""
     if not whole.pinned.size:
         return row
-    return Row(row.z, Loop(whole.points, whole.pinned), row.name, row.section, row.hole, pinned=True)
+    corners = np.union1d(whole.pinned, _vertices_at(whole.points, [row.loop]))
+    return Row(row.z, Loop(whole.points, frozen_ints(corners)), row.name, row.section, row.hole, pinned=True)
 
 
 def part_row(part: Part, level: Level, hole: bool) -> Row:
     """Return a part of a cut loop as a row, its corners at the joint's pins."""
     points, pinned = _without_short_chords(part)
-    return Row(level.z, Loop(points, pinned), level.name, None, hole, pinned=True)
+    corners = np.union1d(pinned, _vertices_at(points, level.loops))
+    return Row(level.z, Loop(points, frozen_ints(corners)), level.name, None, hole, pinned=True)
+
+
+def _vertices_at(points: FloatArray, loops: Iterable[Loop]) -> IntArray:
+    """Return the vertices that lie on corners of the loops."""
+    corners = np.concatenate([loop.points[loop.corners] for loop in loops])
+    if not len(corners):
+        return np.empty(0, dtype=np.int64)
+    distance, nearest = cKDTree(points).query(corners)
+    return np.asarray(nearest[distance <= SAME * float(np.ptp(points))], dtype=np.int64)
 
 
 def _without_short_chords(part: Part) -> tuple[FloatArray, IntArray]:

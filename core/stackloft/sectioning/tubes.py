@@ -30,7 +30,8 @@ from stackloft.sectioning.level_changes import (
     narrows,
     steps_between,
 )
-from stackloft.sectioning.levels import Level, covered, part_level, plain_level
+from stackloft.sectioning.levels import Level, covered, is_hole, part_level, plain_level
+from stackloft.sectioning.line_parting import Parting, parting_levels
 from stackloft.sectioning.loop_links import LinkedLoops, link_loops
 from stackloft.sectioning.section_regions import Regions, section_regions
 from stackloft.sectioning.sections_between import between
@@ -58,6 +59,7 @@ class _Builder:
         real = [level for level in levels if level.section is not None]
         z = [level.z for level in real]
         areas = [covered(level) for level in real]
+        self._real = real
         self._areas = PchipInterpolator(z, areas) if len(z) > 1 else None
         self.done: list[TubeOfLoops] = []
         self.joints: list[tuple[FloatArray, ...]] = []
@@ -66,6 +68,11 @@ class _Builder:
     def area(self, z: float) -> float:
         """Return the area of all loops at z, mm², from the sections' areas."""
         return float(self._areas(z)) if self._areas is not None else 0.0
+
+    def from_section(self, level: Level, *, away_from: Level) -> tuple[Level, ...]:
+        """Return the section of a level, whole, and those beyond it as seen from another level."""
+        outwards = self._real if level.z > away_from.z else self._real[::-1]
+        return tuple(other for other in outwards if (other.z - level.z) * (level.z - away_from.z) >= 0.0)
 
     def begin(self, row: Row, end: JointUse | float) -> TubeOfLoops:
         return TubeOfLoops([row], [end])
@@ -168,7 +175,7 @@ def _change(
     else:
         put_in, trial = [], [joint_of(one, two)]
     if any(t is None for t in trial) or (put_in and not narrows(trial, joint_of(one, two))):
-        put_in, trial = [], [joint_of(one, two)]
+        put_in, trial = _along_a_line(builder, one, two)
     if trial[0] is None and not put_in:
         raise InputError(
             "neighbouring sections cannot be linked: loops part and meet between them in more ways than one",
@@ -181,6 +188,21 @@ def _change(
         open_tubes = _step(builder, low, high, step, open_tubes)
     for j, tube in zip(linked.after, open_tubes, strict=True):
         found[j] = tube
+
+
+def _along_a_line(
+    builder: _Builder, one: Level, two: Level
+) -> tuple[list[Level], list[Straight | Joined | None]]:
+    """Return levels put in where a piece parts along a line, none where it does not, and how they follow."""
+    direct: tuple[list[Level], list[Straight | Joined | None]] = ([], [joint_of(one, two)])
+    whole, parted = sorted((one, two), key=lambda level: len(level.loops))
+    if len(whole.loops) != 1 or len({is_hole(p) for p in (*whole.polygons, *parted.polygons)}) != 1:
+        return direct
+    put_in = parting_levels(Parting(whole, parted, builder.from_section(parted, away_from=whole)))
+    if whole is two:
+        put_in = put_in[::-1]
+    trial = steps_between(one, put_in, two)
+    return (put_in, trial) if all(t is not None for t in trial) else direct
 
 
 def _part_area(
