@@ -95,7 +95,8 @@ def _outermost(rows: list[Row], *, at_last: bool) -> tuple[FloatArray, FloatArra
     """Return positions and areas of a tube's outermost sections, outermost first."""
     inward = rows[::-1] if at_last else rows
     real = [row for row in inward if row.section is not None]
-    chosen = (real if len(real) >= 2 else inward)[:OUTER]
+    # Rows put in lie too close together for a parabola; over the whole of a short tube they make a line.
+    chosen = real[:OUTER] if len(real) >= 2 else [inward[0], inward[-1]] if len(inward) > 1 else inward
     return np.array([row.z for row in chosen]), np.array([abs(row.loop.signed_area) for row in chosen])
 
 
