@@ -22,6 +22,8 @@ from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops
 
 SIDES = 160
 """About how many sides a section's loop has as a polygon."""
+LATE = 2.0
+"""Areas that reach zero within this many gaps belong to a round end, later ones to a plane one."""
 FACE = PlannedEnd(EndKind.FACE, 0.0, "closed over its ridge", guessed=False)
 ON_SECTION = PlannedEnd(EndKind.FACE, 0.0, "given: its outermost section is its face", guessed=False)
 
@@ -103,15 +105,18 @@ def _outermost(rows: list[Row], *, at_last: bool) -> tuple[FloatArray, FloatArra
 def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row], PlannedEnd]:
     """Return rows and end of a tube that ends before the next level, `gap` mm away.
 
-    Where the areas close before that level there is a pole; otherwise a plane face half-way.
+    Where the areas close before that level, or not long after it, there is a pole; otherwise a plane face
+    half-way.
     """
     roofed = _vanishing_ridge(rows, gap, at_last=at_last)
     if roofed is not None:
         return roofed, FACE
     z, areas = _outermost(rows, at_last=at_last)
     root = distance_to_end(areas, np.abs(z - z[0])) if len(z) >= 2 else None
-    if root is not None and root < gap:
-        return rows, PlannedEnd(EndKind.ROUND, root, "the areas reach zero there", guessed=False)
+    if root is not None and root < LATE * gap:
+        # A body that closed later would show on the next section: it is blunter than the areas say.
+        reason = "the areas reach zero there" if root < gap else "the areas reach zero later: held to one pitch"
+        return rows, PlannedEnd(EndKind.ROUND, min(root, gap), reason, guessed=False)
     if len(z) == 1:
         return rows, PlannedEnd(EndKind.ROUND, 0.5 * gap, "seen on one section alone", guessed=False)
     row = rows[-1] if at_last else rows[0]
