@@ -23,7 +23,7 @@ COARSEST = 0.55
 """Largest difference in area between a loop's polygon and its curve; 4 points on a circle give 0.525."""
 SAMPLES = 128
 """Samples of a loop when phases are compared."""
-MOST_SOLVED = 64
+MOST_SOLVED = 128
 """Correspondence is solved for at most this many points; more are placed between."""
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from stackloft.geometry.bridge_cut import cut_bridges
 from stackloft.geometry.bridge_edges import BridgeCut
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.sectioning.levels import Level, is_hole, loop_counts, plain_level
 from stackloft.sectioning.section_regions import overlap
@@ -26,8 +27,11 @@ def narrows(trial: list[Straight | Joined | None], direct: Straight | Joined | N
     """
     if not isinstance(direct, Joined):
         return True
-    cuts = [step.cut for step in trial if isinstance(step, Joined)]
-    return max((bridge_length(cut) for cut in cuts), default=0.0) < NARROWER * bridge_length(direct.cut)
+    lengths = [bridge_length(step.cut) for step in trial if isinstance(step, Joined)]
+    whole = bridge_length(direct.cut)
+    if whole in lengths:  # the section itself lies next to the change
+        whole = max(np.sqrt(abs(polygon_area(w.points))) for w in direct.cut.wholes)
+    return max(lengths, default=0.0) < NARROWER * whole
 
 
 def bridge_length(cut: BridgeCut) -> float:

@@ -130,7 +130,5 @@ def _inscribed(outline: list[FloatArray], loops: list[FloatArray]) -> float:
         row, column = np.unravel_index(int(np.argmax(free)), free.shape)
         best = float(free[row, column])
         step = x[1] - x[0]
-        x, y = (
-            at + np.arange(-ZOOM, ZOOM + 1) * step / ZOOM for at in (x[column], y[row])
-        )
+        x, y = (at + np.arange(-ZOOM, ZOOM + 1) * step / ZOOM for at in (x[column], y[row]))
     return best

@@ -35,6 +35,8 @@ CLOSEST = 1.0 / 256.0
 """How closely, in pitches, the change of topology is bracketed."""
 GRADES = (0.25, 1.0 / 16.0, 1.0 / 64.0)
 """Distances from the change, as fractions of the way to the given section, at which sections are put in."""
+NEAR = 0.1
+"""Part of the pitch within which a section stands for the levels about the change."""
 LEAST = 1e-3
 """Loops smaller than this fraction of the box are noise of the interpolation."""
 NEWTON = 6
@@ -176,12 +178,19 @@ def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
     low, high = _reach(field, 0.0, 1.0), _reach(field, 1.0, 0.0)
     if not 0.0 < low < high < 1.0:
         return []
-    below = [low * (1.0 - g) for g in GRADES]
-    above = [high + (1.0 - high) * g for g in reversed(GRADES)]
-    levels = [
-        (t, field.at(t), start) for ts, start in ((below, 0.0), ((low, high), None), (above, 1.0)) for t in ts
-    ]
     sides = {start: _topology(field.at(start)) for start in (0.0, 1.0)}
+    # A section next to the change is one of its two levels itself where it is the one that is cut, and no
+    # others fit between: columns through rows a hair apart take their direction from the noise.
+    near = low < NEAR, 1.0 - high < NEAR
+    cut_first = np.subtract(*sides[0.0]) < np.subtract(*sides[1.0])
+    below = [] if near[0] else [low * (1.0 - g) for g in GRADES]
+    above = [] if near[1] else [high + (1.0 - high) * g for g in reversed(GRADES)]
+    about = [
+        t for t, near_cut in ((low, near[0] and cut_first), (high, near[1] and not cut_first)) if not near_cut
+    ]
+    levels = [
+        (t, field.at(t), start) for ts, start in ((below, 0.0), (about, None), (above, 1.0)) for t in ts
+    ]
     return [(t, loops) for t, loops, start in levels if start is None or _topology(loops) == sides[start]]
 
 

@@ -115,7 +115,9 @@ def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row]
     root = distance_to_end(areas, np.abs(z - z[0])) if len(z) >= 2 else None
     if root is not None and root < LATE * gap:
         # A body that closed later would show on the next section: it is blunter than the areas say.
-        reason = "the areas reach zero there" if root < gap else "the areas reach zero later: held to one pitch"
+        reason = (
+            "the areas reach zero there" if root < gap else "the areas reach zero later: held to one pitch"
+        )
         return rows, PlannedEnd(EndKind.ROUND, min(root, gap), reason, guessed=False)
     if len(z) == 1:
         return rows, PlannedEnd(EndKind.ROUND, 0.5 * gap, "seen on one section alone", guessed=False)
