@@ -26,7 +26,10 @@ EVENNESS = 10.0
 """λ: what uneven spacing costs against the slope of the columns."""
 HOLD = 0.3
 """Pull to the first guess, which keeps all columns from sliding round together."""
-ITERATIONS = 4
+ITERATIONS = 12
+LEAST_SHARE = 0.25
+"""Sections that lie close together count for spacing as if this fraction of the mean pitch apart, lest
+their points bunch."""
 
 
 def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolArray) -> FloatArray:
@@ -66,12 +69,12 @@ def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolAr
 
 
 def _weights(z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return 1/h of each pair and each section's share of the length, both over the points."""
+    """Return 1/h of each pair and each section's share of the length, not less than `LEAST_SHARE`."""
     gap = np.diff(z)
     share = np.zeros(len(z))
     share[:-1] += 0.5 * gap
     share[1:] += 0.5 * gap
-    return 1.0 / gap, share
+    return 1.0 / gap, np.maximum(share, LEAST_SHARE * share.mean())
 
 
 def _gaps(s: FloatArray) -> FloatArray:
