@@ -20,6 +20,7 @@ CASES = [
 QUICK = {
     "torus flat",
     "torus leaning",
+    "tube lying",
     "tube upright",
     "hollow-sphere as made",
     "y-branch upright",
@@ -28,11 +29,6 @@ QUICK = {
     "apple square to its core",
     "two-bodies in pose 4",
 }
-BEYOND = {
-    "tube lying": (0.7, 1.8),
-    "walnut as made": (0.5, 1.2),
-}
-"""Where the bounds are not kept yet: both change their topology along a whole line at once."""
 
 
 def stack_of(phantom, sections=21, points=200):
@@ -75,9 +71,8 @@ def test_all_bodies_in_all_poses(proof):
         [(n, f"{v:+.3f}", f"{a:+.3f}", k, j) for n, v, a, k, j in rows],
     )
     for label, volume, area, _, _ in rows:
-        most = BEYOND.get(label, (VOLUME, AREA))
-        assert abs(volume) <= most[0], label
-        assert abs(area) <= most[1], label
+        assert abs(volume) <= VOLUME, label
+        assert abs(area) <= AREA, label
 
 
 @pytest.mark.parametrize(
@@ -127,3 +122,16 @@ def test_a_mirrored_body_measures_the_same():
     base, other = (SurfaceGauss().integrate(LoftReconstructor().reconstruct(s)) for s in (stack, flipped))
     assert other.volume == pytest.approx(base.volume, rel=5e-4)
     assert other.area == pytest.approx(base.area, rel=2e-3)
+
+
+@pytest.mark.parametrize("count", [41, pytest.param(120, marks=pytest.mark.prove)])
+def test_levels_a_hair_apart_add_no_area(count):
+    """Of a ring cut askew by many sections: columns that slipped there once made it four times as large."""
+    phantom = dict(kind_poses())["torus leaning"]
+    volume, area, _ = errors(stack_of(phantom, count), phantom)
+    assert abs(volume) <= 0.05
+    assert abs(area) <= 0.1
+
+
+def kind_poses():
+    return [(label, phantom) for kind in phantoms.TOPOLOGY for label, phantom in kind.phantoms()]

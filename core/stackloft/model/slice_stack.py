@@ -46,9 +46,11 @@ class Hints:
     measured_volume: float | None = None
     """mm³"""
     slices: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)
-    """Per-slice overrides (``threshold``, ``mask``, ``skip``) by slice number, counted from 1."""
+    """Per-slice overrides (``threshold``, ``mask``, ``links``) by slice number, counted from 1."""
     align: str | None = None
     """``none``, ``translation`` or ``rigid``; None: not said."""
+    links: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
+    """By a section's name: which of its loops go on as which of the next one's, numbered from 1 by size."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

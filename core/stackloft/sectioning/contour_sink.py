@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from stackloft.contracts.sink import Sink
@@ -13,6 +14,7 @@ from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.ahead import Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
+from stackloft.sectioning.loop_numbers import said_links
 from stackloft.sectioning.slab_contours import on_middle_planes
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
 from stackloft.sectioning.stack_hazards import stack_hazards
@@ -93,7 +95,7 @@ class ContourSink:
             seen_beyond=_seen_beyond(segmentation),
             affine=stack.affine,
             scale_uncertainty=stack.scale_uncertainty,
-            hints=stack.hints,
+            hints=replace(stack.hints, links=said_links(stack.hints.slices, stack.names)),
             notices=(*stack.notices, *segmentation.notices, *gathered(notices), *self._mistakes(sections)),
             provenance=stack.provenance,
         )

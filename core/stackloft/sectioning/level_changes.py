@@ -60,7 +60,7 @@ class Joined:
 
 def levels_between(one: Level, two: Level, area: Callable[[float], float]) -> list[Level]:
     """Return levels put in about the changes of topology."""
-    field = between(list(one.polygons), list(two.polygons), area)
+    field = between(list(one.polygons), list(two.polygons), two.z - one.z, area)
     name = f"between {one.name} and {two.name}"
     return [plain_level(one.z + t * (two.z - one.z), loops, name) for t, loops in change_levels(field)]
 

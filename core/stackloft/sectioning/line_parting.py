@@ -27,7 +27,7 @@ from stackloft.sectioning.roof import TURNS, Thickness, closing_depth
 from stackloft.sectioning.sections_between import SIDES, evened_loop, grid_lines, plane_grid, zero_lines
 
 CLOSING = 4.0
-"""Radius, in half widths of the gap, of the disc that closes it: its ends dip in by an eighth of that width."""
+"""Radius, in half widths of the gap, of the disc that closes it: its ends dip in by an eighth of a width."""
 LONGEST = 0.98
 """The line lies at most this fraction of the pitch from the parted section."""
 REFINED = 3

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stackloft.geometry.end_model import distance_to_end
-from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.second_moments import central_moments
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.roof import TURNS, Thickness, closing_depth

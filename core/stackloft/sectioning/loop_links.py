@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,14 @@ def link_loops(before: Regions, after: Regions) -> list[LinkedLoops]:
     >>> link_loops(one, two)
     [LinkedLoops(before=(0,), after=(0, 1), weak=False)]
     """
+    links, weak = _linked_pairs(before, after)
+    return components(links, before, after, weak)
+
+
+Pair = tuple[int, int]
+
+
+def _linked_pairs(before: Regions, after: Regions) -> tuple[list[Pair], set[Pair]]:
     pieces, weak_pieces = _links(_overlaps(before, after, holes=False))
     hollows = _overlaps(before, after, holes=True)
     hollow_links, weak_hollows = _links(hollows)
@@ -56,10 +65,28 @@ def link_loops(before: Regions, after: Regions) -> list[LinkedLoops]:
         if (before.piece(i), after.piece(j)) in pieces
         and _same_background(before.background(i), after.background(j), hollow_links, opened)
     ]
-    return _components(links, before, after, weak)
+    return links, weak
 
 
-Pair = tuple[int, int]
+def simpler_links(before: Regions, after: Regions, linked: LinkedLoops) -> Iterator[list[LinkedLoops]]:
+    """Yield simpler ways in which the same loops may hang together, the weakest overlaps given up first.
+
+    Loops that part and meet at once cannot be joined in one step. Without its least overlaps such a knot
+    falls apart into loops that go on, part or meet.
+    """
+    links, weak = _linked_pairs(before, after)
+    own = [(i, j) for i, j in links if i in linked.before and j in linked.after]
+    share = {
+        (i, j): overlap([before.loops[i]], [after.loops[j]]) if before.holes[i] == after.holes[j] else 1.0
+        for i, j in own
+    }
+    for count in range(len(own) - 1, 0, -1):
+        kept = sorted(own, key=lambda pair: -share[pair])[:count]
+        yield [
+            found
+            for found in components(kept, before, after, weak)
+            if set(found.before) <= set(linked.before) and set(found.after) <= set(linked.after)
+        ]
 
 
 def _overlaps(before: Regions, after: Regions, *, holes: bool) -> dict[Pair, float]:
@@ -103,7 +130,7 @@ def _same_background(i: int, j: int, links: set[Pair], opened: set[Pair]) -> boo
     return (i, j) in opened if OUTSIDE in {i, j} else (i, j) in links
 
 
-def _components(links: list[Pair], before: Regions, after: Regions, weak: set[Pair]) -> list[LinkedLoops]:
+def components(links: list[Pair], before: Regions, after: Regions, weak: set[Pair]) -> list[LinkedLoops]:
     """Return the connected sets of loops, in order of their first loop."""
     groups: list[tuple[set[int], set[int]]] = [({i}, set()) for i in range(len(before.loops))]
     groups += [(set(), {j}) for j in range(len(after.loops))]

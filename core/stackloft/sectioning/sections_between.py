@@ -35,6 +35,8 @@ CLOSEST = 1.0 / 256.0
 """How closely, in pitches, the change of topology is bracketed."""
 GRADES = (0.25, 1.0 / 16.0, 1.0 / 64.0)
 """Distances from the change, as fractions of the way to the given section, at which sections are put in."""
+FINEST = 0.25
+"""Levels are put in no closer to the change than this many grid steps."""
 NEAR = 0.1
 """Part of the pitch within which a section stands for the levels about the change."""
 LEAST = 1e-3
@@ -53,6 +55,8 @@ class BetweenField:
     before: FloatArray
     """(rows, columns) mm, positive inside"""
     after: FloatArray
+    pitch: float
+    """mm"""
     area: Callable[[float], float]
     """mm² that the loops should enclose at t"""
     hollow: bool = False
@@ -67,7 +71,7 @@ class BetweenField:
 
 
 def between(
-    before: list[FloatArray], after: list[FloatArray], area: Callable[[float], float]
+    before: list[FloatArray], after: list[FloatArray], pitch: float, area: Callable[[float], float]
 ) -> BetweenField:
     """Return the interpolator between the loops of two sections.
 
@@ -75,6 +79,8 @@ def between(
     ----------
     before, after : lists of (k, 2) arrays
         Polygons, mm, body on the left.
+    pitch : float
+        From one section to the other, mm.
     area : callable
         Area, mm², that the loops should enclose at t. Interpolated distances thin out where a slender part
         moves sideways; their level is set so that they do not.
@@ -82,7 +88,7 @@ def between(
     x, y = plane_grid([*before, *after])
     largest = max([*before, *after], key=lambda p: abs(polygon_area(p)))
     fields = signed_distance(x, y, before), signed_distance(x, y, after)
-    return BetweenField(x, y, *fields, area, hollow=polygon_area(largest) < 0.0)
+    return BetweenField(x, y, *fields, pitch, area, hollow=polygon_area(largest) < 0.0)
 
 
 def level_of_area(field: FloatArray, step: float, area: float) -> float:
@@ -179,19 +185,16 @@ def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
     if not 0.0 < low < high < 1.0:
         return []
     sides = {start: _topology(field.at(start)) for start in (0.0, 1.0)}
-    # A section next to the change is one of its two levels itself where it is the one that is cut, and no
-    # others fit between: columns through rows a hair apart take their direction from the noise.
-    near = low < NEAR, 1.0 - high < NEAR
-    cut_first = np.subtract(*sides[0.0]) < np.subtract(*sides[1.0])
-    below = [] if near[0] else [low * (1.0 - g) for g in GRADES]
-    above = [] if near[1] else [high + (1.0 - high) * g for g in reversed(GRADES)]
-    about = [
-        t for t, near_cut in ((low, near[0] and cut_first), (high, near[1] and not cut_first)) if not near_cut
-    ]
-    levels = [
-        (t, field.at(t), start) for ts, start in ((below, 0.0), (about, None), (above, 1.0)) for t in ts
-    ]
-    return [(t, loops) for t, loops, start in levels if start is None or _topology(loops) == sides[start]]
+    # Columns through rows a hair apart take their direction from the noise: of the two levels about the
+    # change only the one that is cut is kept, and a section next to the change stands for it.
+    cut_first = bool(np.subtract(*sides[0.0]) < np.subtract(*sides[1.0]))
+    change, room = (low, low) if cut_first else (high, 1.0 - high)
+    finest = FINEST * float(field.x[1] - field.x[0]) / field.pitch
+    below = [(low * (1.0 - g), 0.0) for g in GRADES if low * g >= finest]
+    about = [] if room < NEAR else [(change, 0.0 if cut_first else 1.0)]
+    above = [(high + (1.0 - high) * g, 1.0) for g in reversed(GRADES) if (1.0 - high) * g >= finest]
+    levels = [(t, field.at(t), side) for t, side in (*below, *about, *above)]
+    return [(t, loops) for t, loops, side in levels if _topology(loops) == sides[side]]
 
 
 def _reach(field: BetweenField, start: float, stop: float) -> float:

@@ -12,8 +12,9 @@ from stackloft.model.ends import End
 from stackloft.sectioning.dense_loops import curve_polygon
 from stackloft.sectioning.ends import StackEnds, plan_ends
 from stackloft.sectioning.levels import Level, is_hole, make_level
+from stackloft.sectioning.line_roof import line_end
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
-from stackloft.sectioning.stack_roofs import Roof, Side, roofs_of, sees_all
+from stackloft.sectioning.stack_roofs import OUTER, Roof, Side, roofs_of, sees_all
 from stackloft.sectioning.tube_ends import (
     SIDES,
     PlannedTube,
@@ -45,11 +46,14 @@ class TubePlan:
 
 def is_single(contours: ContourStack) -> bool:
     """Return True when every section is one loop, the outermost fit for poles: no links needed."""
-    if any(len(section.loops) != 1 for section in contours.sections):
+    if contours.hints.links or any(len(section.loops) != 1 for section in contours.sections):
         return False
     if not contours.sections:
         return True  # nothing to link; who wants a solid of it refuses it by name
-    return all(sees_all(contours.sections[k].loops[0].points) for k in (0, -1))
+    outwards = [(section.z, section.loops[0].points) for section in contours.sections]
+    return all(
+        sees_all(side[0][1]) and line_end(side) is None for side in (outwards[:OUTER], outwards[::-1][:OUTER])
+    )
 
 
 def more_points(contours: ContourStack) -> int:
@@ -87,7 +91,7 @@ def plan_tubes(
         whole = plan_ends(stack, said, height)
     sides = [Side(contours, said, whole, at_last) for at_last in (False, True)]
     first, last = (roofs_of(levels, side) for side in sides)
-    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], filled)
+    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], filled, contours.hints.links)
     tubes = tuple(planned_tube(tube, len(levels), sides, inner_faces=inner_faces) for tube in traced.tubes)
     return TubePlan(with_openings(tubes), traced, (tuple(first.planned), tuple(last.planned)), areas)
 

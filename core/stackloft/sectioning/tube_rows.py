@@ -83,7 +83,7 @@ def _vertices_at(points: FloatArray, loops: Iterable[Loop]) -> IntArray:
     if not len(corners):
         return np.empty(0, dtype=np.int64)
     distance, nearest = cKDTree(points).query(corners)
-    return np.asarray(nearest[distance <= SAME * float(np.ptp(points))], dtype=np.int64)
+    return np.asarray(nearest, dtype=np.int64)[distance <= SAME * float(np.ptp(points))]
 
 
 def _without_short_chords(part: Part) -> tuple[FloatArray, IntArray]:

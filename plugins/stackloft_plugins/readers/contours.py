@@ -16,7 +16,7 @@ ends, height and specimen.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -28,6 +28,7 @@ from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
 from stackloft.model.slice_stack import SectionKind
 from stackloft.sectioning.corners import polygon_corners
+from stackloft.sectioning.loop_numbers import said_links
 from stackloft.sectioning.nesting import nesting_depths
 from stackloft_plugins.readers.contour_rows import (
     LoopRows,
@@ -95,12 +96,15 @@ class ContoursReader:
             _section(label, rows, table.has_corners, table_path.name)
             for label, rows in table.sections.items()
         ]
+        sections = sorted(sections, key=lambda section: section.z)
         said = load_stack_file(table_path.parent)
+        hints = said.hints(table_path.parent, {k: k for k in range(1, len(sections) + 1)})
+        names = [section.name for section in sections]
         return ContourStack(
-            sections=tuple(sorted(sections, key=lambda section: section.z)),
+            sections=tuple(sections),
             kind=SectionKind.FACE if said.kind is None else said.kind,
             exact=True,
-            hints=said.hints(table_path.parent, {}),
+            hints=replace(hints, slices={}, links=said_links(hints.slices, names)),
             provenance={"positions": table_path.name},
         )
 
