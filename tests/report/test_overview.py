@@ -9,7 +9,7 @@ from PIL import Image
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import SectionKind, SliceStack
-from stackloft.report.overview import write_overview
+from stackloft.report.overview import RUNS, write_overview
 from stackloft.report.thumbnails import LARGEST, SMALLEST, TOTAL, ThumbnailSink, as_rgb, side_for
 
 MARGIN = 12
@@ -144,3 +144,17 @@ def test_thumbnails_hold_no_view_of_the_photograph():
 def test_a_flat_picture_and_one_with_gaps_become_rgb():
     assert as_rgb(np.full((2, 2), 7.0)).max() == 0
     assert as_rgb(np.array([[np.nan, 0.0], [1.0, 1.0]])).shape == (2, 2, 3)
+
+
+def test_loops_that_go_on_as_each_other_have_one_colour_and_others_another():
+    angle = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+
+    def disc(x, radius):
+        return Loop(np.column_stack([x + radius * np.cos(angle), radius * np.sin(angle)]))
+
+    whole, parts = (disc(0.0, 20.0),), (disc(-11.0, 9.0), disc(11.0, 8.0))
+    loops = [whole, whole, parts, parts]
+    picture = overview(ContourStack(tuple(Section(float(z), own, str(z)) for z, own in enumerate(loops))), [])
+    counts = [int((picture == colour).all(axis=2).sum()) for colour in RUNS]
+    assert min(counts[:3]) > 50
+    assert max(counts[3:]) == 0

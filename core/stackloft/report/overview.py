@@ -29,6 +29,8 @@ from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.slice_stack import turn_matrix
 from stackloft.report.sheet import INK, MOUNT, PAPER, draw_scale_bar, font, line_height, shortened
 from stackloft.report.thumbnails import Rgb, Thumbnail, side_for
+from stackloft.sectioning.loop_numbers import by_size
+from stackloft.sectioning.loop_runs import loop_runs
 
 COLOURS = {
     "magenta": (255, 0, 220),
@@ -38,6 +40,11 @@ COLOURS = {
     "blue": (20, 60, 255),
 }
 """The contour's colour is the one of these that stands out best from what lies under the contours."""
+RUNS = (
+    (255, 0, 220), (0, 200, 255), (255, 215, 0), (0, 210, 70), (255, 120, 0), (150, 90, 255), (255, 60, 60),
+    (0, 170, 140),
+)  # fmt: skip
+"""Where sections have several loops, those that go on as each other have one colour; the colours repeat."""
 
 _GAP = 12
 BAR = 0.3
@@ -78,7 +85,8 @@ def _over_photographs(contours: ContourStack, thumbnails: Sequence[Thumbnail]) -
     per_mm = side / max(max(small.extent) for small in thumbnails)
     pairs = [(small.scaled(per_mm), sections.get((small.name, round(small.z, 9)))) for small in thumbnails]
     colour = _standing_out([(small, section) for small, section in pairs if section is not None])
-    return [_cell(small, section, colour, number) for number, (small, section) in enumerate(pairs, start=1)]
+    colours = _by_run(contours, colour)
+    return [_cell(small, section, colours, number) for number, (small, section) in enumerate(pairs, start=1)]
 
 
 def _on_paper(contours: ContourStack) -> list[_Cell]:
@@ -93,28 +101,58 @@ def _on_paper(contours: ContourStack) -> list[_Cell]:
         Thumbnail(section.name, section.z, paper, (per_mm, per_mm), origin) for section in contours.sections
     ]
     pairs = zip(small, contours.sections, strict=True)
+    colours = _by_run(contours, COLOURS["blue"])
     return [
-        _cell(one, section, COLOURS["blue"], number, light=True)
+        _cell(one, section, colours, number, light=True)
         for number, (one, section) in enumerate(pairs, start=1)
     ]
+
+
+Colour = tuple[int, int, int]
+
+
+def _by_run(contours: ContourStack, single: Colour) -> dict[float, list[Colour]]:
+    """Return the colour of each loop by its section's z: `single` unless a section has several loops."""
+    sections = contours.sections
+    runs = loop_runs(contours) if any(len(section.loops) > 1 for section in sections) else []
+    if not runs:
+        return {section.z: [single] * len(section.loops) for section in sections}
+    return {
+        section.z: [RUNS[k % len(RUNS)] for k in own] for section, own in zip(sections, runs, strict=True)
+    }
 
 
 def _cell(
     small: Thumbnail,
     section: Section | None,
-    colour: tuple[int, int, int],
+    colours: dict[float, list[Colour]],
     number: int,
     *,
     light: bool = False,
 ) -> _Cell:
     picture = small.picture.copy()
-    for loop in section.loops if section is not None else ():
+    loops = section.loops if section is not None else ()
+    own = colours[section.z] if section is not None else []
+    for loop, colour in zip(loops, own, strict=True):
         at = np.round(_pixels(loop, small) * (1 << _FRACTION_BITS)).astype(np.int32)
         cv2.polylines(picture, [at.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA, _FRACTION_BITS)
+    if len(loops) > 1:
+        _number_loops(
+            picture, [_pixels(loop, small) for loop in loops], colours[section.z] if section else []
+        )
     unused = "" if section is not None else "  (not used)"
     position = f"{small.z:.2f}".rstrip("0").rstrip(".")
     lines = (f"{number}  {small.name}", f"z {position} mm{unused}")
     return _Cell(picture, lines, small.per_mm[0], light)
+
+
+def _number_loops(picture: Rgb, outlines: list[FloatArray], colours: list[Colour]) -> None:
+    """Write each loop's number, the largest first, at its top: what links in stack.toml are said by."""
+    size = max(0.3, picture.shape[1] / 700)
+    for number, k in enumerate(by_size(outlines), start=1):
+        column, row = outlines[k][int(np.argmin(outlines[k][:, 1]))]
+        at = round(column) - 4, max(round(row) - 3, 10)
+        cv2.putText(picture, str(number), at, cv2.FONT_HERSHEY_SIMPLEX, size, colours[k], 1, cv2.LINE_AA)
 
 
 def _pixels(loop: Loop, small: Thumbnail) -> FloatArray:
