@@ -1,4 +1,4 @@
-"""The whole route on photographs of bodies of every topology: decode, segment, trace, link, loft, integrate."""
+"""The whole route on photographs of bodies of every topology: segment, trace, link, loft, integrate."""
 
 from __future__ import annotations
 
