@@ -31,7 +31,10 @@ class CornerChain:
 
 
 def follow_corners(
-    corners: list[FloatArray], count: int, kept: frozenset[int] = frozenset()
+    corners: list[FloatArray],
+    count: int,
+    kept: frozenset[int] = frozenset(),
+    reach: FloatArray | None = None,
 ) -> list[CornerChain]:
     """Return the corner chains of a stack in order round the loop.
 
@@ -44,6 +47,9 @@ def follow_corners(
         closer on any section than a third of the even spacing.
     kept : frozenset of int
         Sections whose corners are never noise.
+    reach : (m - 1,) array, optional
+        Fraction of the loop within which corners of a section and the next belong together; `REACH` if
+        not given.
 
     Returns
     -------
@@ -53,8 +59,9 @@ def follow_corners(
     """
     chains: list[dict[int, float]] = []
     active: list[dict[int, float]] = []
+    within = np.full(len(corners), REACH) if reach is None else np.concatenate([[REACH], reach])
     for section, marks in enumerate(corners):
-        active = _extend(active, section, marks, chains)
+        active = _extend(active, section, marks, chains, float(within[section]))
     least = max(min(2, len(corners)), math.ceil(PERSISTENT * len(corners)))
     long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least or kept & chain.keys()]
     longest = sorted(long_enough, key=lambda chain: (not kept & chain.at.keys(), -len(chain.at), chain.mean))[
@@ -64,7 +71,11 @@ def follow_corners(
 
 
 def _extend(
-    active: list[dict[int, float]], section: int, marks: FloatArray, chains: list[dict[int, float]]
+    active: list[dict[int, float]],
+    section: int,
+    marks: FloatArray,
+    chains: list[dict[int, float]],
+    within: float,
 ) -> list[dict[int, float]]:
     """Append the section's corners to the nearest active chains, or begin new ones."""
     away = np.array([[abs(_wrapped(mark - chain[section - 1])) for chain in active] for mark in marks])
@@ -72,7 +83,7 @@ def _extend(
     taken: set[int] = set()
     for flat in np.argsort(away, axis=None, kind="stable"):  # the closest pair first: a joint's pin beside
         i, k = divmod(int(flat), len(active))  # a corner must not take its column
-        if i in following or k in taken or away[i, k] >= REACH:
+        if i in following or k in taken or away[i, k] >= within:
             continue
         taken.add(k)
         before = active[k][section - 1]

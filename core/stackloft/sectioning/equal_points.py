@@ -16,11 +16,15 @@ from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
-from stackloft.sectioning.corner_columns import CornerChain, follow_corners, place_at, share_points
+from stackloft.sectioning.corner_columns import REACH, CornerChain, follow_corners, place_at, share_points
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
 COARSEST = 0.55
 """Largest difference in area between a loop's polygon and its curve; 4 points on a circle give 0.525."""
+CLOSE = 0.01
+STEEP = 8.0
+"""A corner moves along its loop by at most this many times the way to the next section, and `CLOSE` of the
+loop: sections a hair apart have their corners at the same places."""
 SAMPLES = 128
 """Samples of a loop when phases are compared."""
 MOST_SOLVED = 128
@@ -68,7 +72,8 @@ def equal_points(contours: ContourStack, count: int, kept: frozenset[int] = froz
     _check_fit(curves, ready, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
-    chains = follow_corners(seams.corners, count, kept)
+    reach = np.minimum(REACH, CLOSE + STEEP * np.diff(z) / curves.lengths.max())
+    chains = follow_corners(seams.corners, count, kept, reach)
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)

@@ -12,7 +12,7 @@ from stackloft.geometry.bridge_cut import cut_bridges
 from stackloft.geometry.bridge_edges import BridgeCut
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
-from stackloft.sectioning.levels import Level, is_hole, loop_counts, plain_level
+from stackloft.sectioning.levels import Level, is_hole, loop_counts, put_in_level
 from stackloft.sectioning.section_regions import overlap
 from stackloft.sectioning.sections_between import between, change_levels
 
@@ -62,7 +62,15 @@ def levels_between(one: Level, two: Level, area: Callable[[float], float]) -> li
     """Return levels put in about the changes of topology."""
     field = between(list(one.polygons), list(two.polygons), two.z - one.z, area)
     name = f"between {one.name} and {two.name}"
-    return [plain_level(one.z + t * (two.z - one.z), loops, name) for t, loops in change_levels(field)]
+    return [
+        put_in_level(one.z + t * (two.z - one.z), loops, name)
+        for t, loops in change_levels(field, cornered=cornered(one, two))
+    ]
+
+
+def cornered(*levels: Level) -> bool:
+    """Return whether any loop of the levels has a corner."""
+    return any(len(loop.corners) for level in levels for loop in level.loops)
 
 
 def steps_between(one: Level, put_in: list[Level], two: Level) -> list[Straight | Joined | None]:

@@ -71,9 +71,9 @@ def covered(level: Level) -> float:
     return float(sum(polygon_area(p) for p in level.polygons))
 
 
-def plain_level(z: float, loops: list[FloatArray], name: str) -> Level:
-    """Return a level of polygons put in, body on the left."""
-    return Level(z, tuple(Loop(p) for p in loops), tuple(loops), name, None)
+def put_in_level(z: float, loops: list[Loop], name: str) -> Level:
+    """Return a level of loops put in, body on the left."""
+    return Level(z, tuple(loops), tuple(loop.points for loop in loops), name, None)
 
 
 def loop_counts(level: Level) -> tuple[int, int]:

@@ -22,7 +22,7 @@ from stackloft.geometry.end_model import distance_to_end
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
-from stackloft.sectioning.levels import Level, is_hole, reversed_loop
+from stackloft.sectioning.levels import Level, is_hole, put_in_level, reversed_loop
 from stackloft.sectioning.roof import TURNS, Thickness, closing_depth
 from stackloft.sectioning.sections_between import SIDES, evened_loop, grid_lines, plane_grid, zero_lines
 
@@ -71,7 +71,7 @@ def parting_levels(parting: Parting) -> list[Level]:
         z = parting.parted.z + np.sign(parting.whole.z - parting.parted.z) * depth
         turned = [reversed_loop(loop) if hollow else loop for loop in loops]
         name = f"between {parting.whole.name} and {parting.parted.name}"
-        levels.append(Level(float(z), tuple(turned), tuple(loop.points for loop in turned), name, None))
+        levels.append(put_in_level(float(z), turned, name))
     return levels[::-1]
 
 

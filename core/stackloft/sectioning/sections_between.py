@@ -64,9 +64,18 @@ class BetweenField:
 
     def at(self, t: float) -> list[FloatArray]:
         """Return the loops a fraction t of the way from one section to the other."""
+        return [evened(line, SIDES) for line in self._lines(t)]
+
+    def loops_at(self, t: float, *, cornered: bool) -> list[Loop]:
+        """Return the same loops, with their corners where the sections have some."""
+        if not cornered:  # the tips of parts that have just come apart look like corners
+            return [Loop(points) for points in self.at(t)]
+        return [evened_loop(line, float(self.x[1] - self.x[0]), SIDES) for line in self._lines(t)]
+
+    def _lines(self, t: float) -> list[FloatArray]:
         field = (1.0 - t) * self.before + t * self.after
         field = field - level_of_area(field, self.x[1] - self.x[0], self.area(t))
-        lines = zero_lines(field, self.x, self.y)
+        lines = grid_lines(field, self.x, self.y)
         return [line[::-1] for line in lines] if self.hollow else lines
 
 
@@ -175,7 +184,7 @@ def _even_vertices(line: FloatArray, count: int) -> FloatArray:
     return np.column_stack([np.interp(wanted, arc, line[:, k]) for k in (0, 1)])
 
 
-def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
+def change_levels(field: BetweenField, *, cornered: bool) -> list[tuple[float, list[Loop]]]:
     """Return (t, loops) of levels about the change of topology between t = 0 and t = 1, increasing in t.
 
     The last t with the first section's topology and the first t with the second's are found to `CLOSEST`;
@@ -193,8 +202,10 @@ def change_levels(field: BetweenField) -> list[tuple[float, list[FloatArray]]]:
     below = [(low * (1.0 - g), 0.0) for g in GRADES if low * g >= finest]
     about = [] if room < NEAR else [(change, 0.0 if cut_first else 1.0)]
     above = [(high + (1.0 - high) * g, 1.0) for g in reversed(GRADES) if (1.0 - high) * g >= finest]
-    levels = [(t, field.at(t), side) for t, side in (*below, *about, *above)]
-    return [(t, loops) for t, loops, side in levels if _topology(loops) == sides[side]]
+    levels = [(t, field.loops_at(t, cornered=cornered), side) for t, side in (*below, *about, *above)]
+    return [
+        (t, loops) for t, loops, side in levels if _topology([loop.points for loop in loops]) == sides[side]
+    ]
 
 
 def _reach(field: BetweenField, start: float, stop: float) -> float:

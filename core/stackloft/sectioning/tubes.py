@@ -21,11 +21,8 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray
 from stackloft.model.notices import Notice
-from stackloft.sectioning.level_changes import (
-    Joined,
-    Straight,
-)
-from stackloft.sectioning.levels import Level, part_level, plain_level
+from stackloft.sectioning.level_changes import Joined, Straight, cornered
+from stackloft.sectioning.levels import Level, part_level, put_in_level
 from stackloft.sectioning.loop_numbers import Links
 from stackloft.sectioning.sections_between import between
 from stackloft.sectioning.tube_links import Change, LinkFinder
@@ -127,11 +124,11 @@ def _filling(builder: _Builder, before: Level, after: Level, i: int, j: int) -> 
     )
     rows = []
     for t in FILLING:
-        loops = field.at(t)
+        loops = field.loops_at(t, cornered=cornered(one, two))
         if len(loops) != 1:
             return []
         z = one.z + t * (two.z - one.z)
-        rows += level_rows(plain_level(z, loops, f"between {one.name} and {two.name}"))
+        rows += level_rows(put_in_level(z, loops, f"between {one.name} and {two.name}"))
     return rows
 
 
