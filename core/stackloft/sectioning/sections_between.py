@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.spatial.distance import pdist
 
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area
@@ -39,6 +40,8 @@ FINEST = 0.25
 """Levels are put in no closer to the change than this many grid steps."""
 NEAR = 0.1
 """Part of the pitch within which a section stands for the levels about the change."""
+FACING = 6.0
+"""Grid steps between two corners below which neither is put back."""
 LEAST = 1e-3
 """Loops smaller than this fraction of the box are noise of the interpolation."""
 NEWTON = 6
@@ -163,7 +166,7 @@ def evened(points: FloatArray, most: int) -> FloatArray:
 def evened_loop(points: FloatArray, pixel: float, most: int) -> Loop:
     """Return a line traced on a grid as a loop, its corners put back, the vertices between evenly spaced."""
     loop = with_corners(Loop(points), pixel)
-    if not len(loop.corners):
+    if not len(loop.corners) or _facing(loop.points[loop.corners]) < FACING * pixel:
         return Loop(evened(points, most))
     count = min(most, max(24, len(points) // 2))
     turned = np.roll(loop.points, -int(loop.corners[0]), axis=0)
@@ -175,6 +178,11 @@ def evened_loop(points: FloatArray, pixel: float, most: int) -> Loop:
     vertices = [_even_vertices(piece, n) for piece, n in zip(pieces, sides, strict=True)]
     corners = np.concatenate([[0], np.cumsum(sides)[:-1]])
     return Loop(np.concatenate(vertices), frozen_ints(corners))
+
+
+def _facing(corners: FloatArray) -> float:
+    """Return the least distance of two corners, mm: where a waist pinches, sharpened tips would cross."""
+    return float(pdist(corners).min()) if len(corners) > 1 else np.inf
 
 
 def _even_vertices(line: FloatArray, count: int) -> FloatArray:
@@ -191,7 +199,7 @@ def change_levels(field: BetweenField, *, cornered: bool) -> list[tuple[float, l
     what lies between them is the interpolation's noise or several changes close together.
     """
     low, high = _reach(field, 0.0, 1.0), _reach(field, 1.0, 0.0)
-    if not 0.0 < low < high < 1.0:
+    if low >= high or (low, high) == (0.0, 1.0):
         return []
     sides = {start: _topology(field.at(start)) for start in (0.0, 1.0)}
     # Columns through rows a hair apart take their direction from the noise: of the two levels about the
