@@ -1,4 +1,4 @@
-"""Small outlines that belong to the body: a limb's tip, told from a crumb by the slices beside it."""
+"""Small outlines and holes that are the body's: a limb's tip, told from a crumb by the slices beside it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def with_limbs(
     sections : sequence of Section
         With the outlines that are the body's for sure.
     perhaps : sequence of sequences of (Loop, Notice)
-        For each section, small outlines and what is to be said when they are left out.
+        For each section, small outlines and holes, and what is to be said when they are left out.
 
     Notes
     -----
-    An outline that overlaps the body's on a neighbouring section by `BELONG` of the smaller is part of it,
-    and may in turn carry the next one.
+    An outline (a hole) that overlaps one of the body's on a neighbouring section by `BELONG` of the smaller
+    is part of it, and may in turn carry the next one.
     """
     found = list(sections)
     waiting = [(k, loop, notice) for k, loops in enumerate(perhaps) for loop, notice in loops]
@@ -46,5 +46,5 @@ def _carried(sections: list[Section], k: int, loop: Loop) -> bool:
         overlap([loop.points], [other.points]) >= BELONG
         for section in beside
         for other in section.loops
-        if not other.hole
+        if other.hole == loop.hole
     )

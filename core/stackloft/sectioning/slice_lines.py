@@ -29,6 +29,8 @@ class TraceRules:
     """Other objects above this are kept as outlines of their own: the body branches there."""
     hole: float = 0.02
     """Holes below this are filled (glare, seeds)."""
+    hole_end: float = 0.002
+    """Holes above this are kept where they lie over or under a hole of a neighbouring slice: its end."""
     background_like: float = 0.5
     """A hole is real when it is at least this far from the level towards the background's grey: through a
     real hole the plate is seen, whereas fat or bone may only be nearer to it than the rest."""
@@ -90,7 +92,7 @@ class SortedLines:
     """Holes through which the background shows."""
     filled: list[Line]
     perhaps: list[Line]
-    """Outlines too small to be the body's by themselves."""
+    """Outlines and holes too small to be the body's by themselves."""
 
 
 def sorted_lines(one: SliceToTrace, rules: TraceRules) -> SortedLines:
@@ -106,7 +108,9 @@ def sorted_lines(one: SliceToTrace, rules: TraceRules) -> SortedLines:
     real, filled = _holes(kept, grid, rules)
     # what lies in a hole that is filled is filled with it
     perhaps = [line for line in dropped if not _inside_any(line, kept)]
-    return SortedLines(one, grid, kept, real, filled, perhaps)
+    ends = [hole for hole in filled if -hole.area >= rules.hole_end * kept[0].area]
+    filled = [hole for hole in filled if hole not in ends]
+    return SortedLines(one, grid, kept, real, filled, [*perhaps, *ends])
 
 
 def _quick_grid(section: SectionField) -> Grid | None:

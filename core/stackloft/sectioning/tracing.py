@@ -100,13 +100,18 @@ def _traced(one: SortedLines, loops: Iterator[Loop], rules: TraceRules) -> Trace
     """Return a slice's loops, the next ones of all, with what is to be said of them."""
     name, whole = one.slice.name, one.kept[0].area
     body = tuple(islice(loops, len(one.kept) + len(one.real)))
-    perhaps = tuple((next(loops), dropped_notice(line.area / whole, name)) for line in one.perhaps)
+    perhaps = tuple((next(loops), _left_out(line.area / whole, name)) for line in one.perhaps)
     sides = [_sides(line, one.grid, one.slice.shape) for line in (*one.kept, *one.real)]
     notices = (
         *filled_notice(-sum(hole.area for hole in one.filled) / whole, rules.unnoticed_hole, name),
         *border_notice({side for touched in sides for side in touched}, name),
     )
     return TracedLoops(body, notices, perhaps, tuple(bool(touched) for touched in sides))
+
+
+def _left_out(share: float, name: str) -> Notice:
+    """Return what to say of an outline (or a hole, negative) that no neighbouring slice carries on."""
+    return dropped_notice(share, name) if share > 0.0 else next(filled_notice(-share, 0.0, name))
 
 
 def _sides(line: Line, grid: Grid, shape: tuple[int, int]) -> list[str]:
