@@ -233,6 +233,21 @@ def test_a_plane_end_that_the_surface_runs_into_smoothly_is_part_of_what_is_met(
         np.testing.assert_allclose(target.on_region(int(number))(mine), mine, atol=1e-9)
 
 
+@pytest.mark.parametrize("name", LOOPS)
+def test_no_part_of_a_sharp_edge_is_without_its_line(name):
+    """A gap would draw all nodes beside it to its two ends, and leave elements without volume."""
+    body = body_of(exact_case(name)[0])
+    target = boundary_target(body.surface(0.05), body.patches, body.ends())
+    ends = target.surface.vertices[target.regions.edges]
+    sides = target.regions.sides
+    for a, b in np.unique(sides, axis=0).tolist():
+        own = ends[(sides == (a, b)).all(axis=1)]
+        points = np.concatenate([own[:, 0] + t * (own[:, 1] - own[:, 0]) for t in (0.2, 0.5, 0.9)])
+        found = target.on_edges(a, b)
+        assert found is not None
+        np.testing.assert_allclose(found(points), points, atol=1e-9)
+
+
 @pytest.mark.prove
 def test_prove_tetwild(proof):
     rows = []

@@ -28,6 +28,8 @@ _CRUMB = 1e-3
 """Part of a loft's area below which a region is none of its own."""
 _SAME = 1e-8
 """Part of the surface's size within which points are the same."""
+_BARE = 0.25
+"""Part of an edge's length that its middle is off the rims when none of them runs along it."""
 Projection = Callable[[FloatArray], FloatArray]
 
 
@@ -87,8 +89,7 @@ class BoundaryTarget:
         if not len(mine):
             return None
         ends = self.surface.vertices[mine]
-        part = np.linspace(0.0, 1.0, 4)[None, :, None]
-        straight = CurveSet(ends[:, :1] * (1.0 - part) + ends[:, 1:] * part)
+        straight = CurveSet(_cubics(ends))
         exact = self._rims(mine, straight)
         curves = straight if exact is None else exact
         return lambda points: curves.project(points).points
@@ -110,8 +111,18 @@ class BoundaryTarget:
         rims = rims[off <= 0.3 * longest]
         if not len(rims):
             return None
-        curves = CurveSet(rims)
+        ends = self.surface.vertices[edges]
+        bare = CurveSet(rims).project(ends.mean(axis=1)).distance > _BARE * np.linalg.norm(
+            ends[:, 1] - ends[:, 0], axis=1
+        )  # else nodes beside a gap would all go to its two ends
+        curves = CurveSet(np.concatenate([rims, _cubics(ends[bare])]))
         return curves if curves.project(points).distance.max() <= tolerance else None
+
+
+def _cubics(ends: FloatArray) -> FloatArray:
+    """Return (k, 4, 3) Bézier points of straight lines between (k, 2, 3) points."""
+    part = np.linspace(0.0, 1.0, 4)[None, :, None]
+    return np.asarray(ends[:, :1] * (1.0 - part) + ends[:, 1:] * part)
 
 
 def boundary_target(
