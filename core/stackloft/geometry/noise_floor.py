@@ -26,6 +26,8 @@ MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))
 """Its median, in σ."""
 SPREAD = float(np.sqrt(2.0 - 0.5 * np.pi))
 """Its standard deviation, in σ."""
+EMPTY = 2.5
+"""In floors above no signal: what is darker is taken for empty (3.1 σ; one empty pixel in 130 is not)."""
 FEWEST = 300
 """Values below which a distribution's skewness is not known: its standard error is √(6/n)."""
 _SKEWED = (
@@ -35,6 +37,28 @@ _SKEWED = (
     1.0,
 )  # skewness: from the first no longer symmetric, to the last no longer Rayleigh's
 _OUTLIER = 6.0  # robust standard deviations
+
+
+def without_floor(values: NDArray[Any], background: float, floor: float) -> NDArray[np.float32]:
+    """Return grey levels with what noise adds to empty pixels taken off these.
+
+    Parameters
+    ----------
+    values : array
+        Grey levels, signal towards higher ones.
+    background : float
+        Grey level of no signal.
+    floor : float
+        From `noise_floor`.
+
+    Examples
+    --------
+    >>> without_floor(np.array([10.0, 12.0, 60.0]), 0.0, 10.0).tolist()
+    [0.0, 2.0, 60.0]
+    """
+    grey = values.astype(np.float32)
+    grey[grey < np.float32(background + EMPTY * floor)] -= np.float32(floor)
+    return grey
 
 
 def noise_floor(values: NDArray[Any]) -> float:

@@ -86,8 +86,6 @@ class Segmentation:
     neck: float | None = None
     """Bodies that touch are cut apart where the neck between them is narrower than this part of the thinner
     one's width; None: what hangs together is one body."""
-    noise_floor: float = 0.0
-    """Grey levels by which noise lifts the background's mean above no signal (magnitude pictures)."""
     before: tuple[Beyond, ...] = ()
     """Slices before the first one that the body may reach into, in order."""
     after: tuple[Beyond, ...] = ()

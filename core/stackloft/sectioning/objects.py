@@ -166,7 +166,6 @@ def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[N
         body,
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
-        noise_floor=whole.noise_floor,
         before=_beyond(body, linked.kept, range(every[0] - 1, first)),
         after=_beyond(body, linked.kept, range(last + 1, every[-1] + 2)),
     )

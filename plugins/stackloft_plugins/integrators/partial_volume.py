@@ -19,7 +19,6 @@ import numpy as np
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
-from stackloft.geometry.noise_floor import MEAN, MEDIAN
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
@@ -38,8 +37,8 @@ _FEW = 4
 """Likewise of the innermost pixels of a thin body."""
 _BEYOND, _EDGE, _WITHIN = 1, 2, 3
 """Zones around the boundary, by how many of the outer ring, the edge zone and the inside hold a pixel."""
-_EMPTY = 2.5
-"""Times the background's lift by noise: greys below this are taken for empty pixels (3.1 σ)."""
+_OUTLIER = 6.0
+"""Robust standard deviations: what is further from the background's median does not count in its mean."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +46,11 @@ class PartialVolume:
     """Sum of coverage: unbiased for a body of one grey before a background of another, at any voxel size.
 
     Assumes that grey is proportional to the filled fraction of a pixel (and of a slab, for scans) and that
-    blur keeps within ``zone`` pixels of the edge; the two levels are medians of rings on either side of that
+    blur keeps within ``zone`` pixels of the edge; the two levels are those of rings on either side of that
     zone, per slice for photographs, over all slices for scans. No threshold enters, so that slabs that are
-    filled to less than a half count too, those beyond the outermost contours among them; what noise adds to
-    empty pixels of magnitude pictures is taken off. Errs with a skin of another grey than the flesh below it:
-    by its thickness times the relative difference. Gives no area. Across photographs (faces) it errs as
-    Cavalieri's rule does. Of a label map, whose voxels are filled or not, it is the sum of voxels.
+    filled to less than a half count too, those beyond the outermost contours among them. Errs with a skin of
+    another grey than the flesh below it: by its thickness times the relative difference. Gives no area.
+    Across photographs (faces) it errs as Cavalieri's rule does. Of a label map it is the sum of voxels.
     """
 
     zone: int = option(2, "how far from the edge pixels may be partly filled", unit="px", ge=1, le=20)
@@ -103,7 +101,6 @@ class _CoverageSink:
         self._segmentation = segmentation
         stack = segmentation.stack
         self._slab = stack.kind is SectionKind.SLAB
-        self._lift = segmentation.noise_floor
         self._before: SeenSlice | None = None
         self._current: SeenSlice | None = None
         self._sums: list[_SliceSums] = []
@@ -134,7 +131,7 @@ class _CoverageSink:
             self._sums.append(_counted(self._current))
         elif self._current is not None:
             beside = (self._before, seen) if self._slab else (self._current, self._current)
-            self._sums.append(_sums(self._current, beside, self._zone, self._lift))
+            self._sums.append(_sums(self._current, beside, self._zone))
         self._before, self._current = self._current, seen
 
     def _covered(self) -> FloatArray:
@@ -166,9 +163,7 @@ def _counted(current: SeenSlice) -> _SliceSums:
     return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, nan, nan, nan)
 
 
-def _sums(
-    current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int, lift: float
-) -> _SliceSums:
+def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int) -> _SliceSums:
     """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
@@ -181,11 +176,11 @@ def _sums(
     zones = (inside + near + wide).ravel()[where]
     grey = current.relative(where)
     edge, body = grey[zones == _EDGE], _level(grey[zones == _WITHIN])
-    background = _level(grey[zones == _BEYOND]) - lift * MEDIAN / MEAN
+    background = _mean_level(grey[zones == _BEYOND])
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
-        grey=float(edge.sum()) - lift * np.count_nonzero(edge < background + _EMPTY * lift),
+        grey=float(edge.sum()),
         body=body,
         background=background,
         near=_innermost(current, common) if np.isnan(body) else body,
@@ -199,6 +194,14 @@ def _innermost(current: SeenSlice, common: Mask) -> float:
 
 def _eroded(mask: Mask, depth: int) -> Mask:
     return np.asarray(cv2.erode(mask, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
+
+
+def _mean_level(values: FloatArray) -> float:
+    """Return the mean without outliers: it is a sum that it is taken off from, and noise may be skewed."""
+    if len(values) < _ENOUGH:
+        return float("nan")
+    off = np.abs(values - np.median(values))
+    return float(values[off <= _OUTLIER * 1.4826 * float(np.median(off))].mean())
 
 
 def _level(values: FloatArray, enough: int = _ENOUGH) -> float:

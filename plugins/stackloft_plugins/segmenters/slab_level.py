@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.noise_floor import MEAN, MEDIAN, noise_floor
+from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, noise_floor
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
@@ -47,6 +47,8 @@ class SlabLevel:
     body_above: bool
     noise_floor: float = 0.0
     """Grey levels by which noise lifts the background above no signal."""
+    no_signal: float = 0.0
+    """Grey level without it."""
     notices: tuple[Notice, ...] = ()
 
 
@@ -112,14 +114,17 @@ def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) ->
             raise InputError("no boundary between a body and its background", where=where,
                              fix="give --set segmenter.threshold=LEVEL")  # fmt: skip
         body, air = float(np.median(inside)), float(np.median(outside))
-        floor = noise_floor(sign * outside)
-        level = 0.5 * (body + air - sign * floor * MEDIAN / MEAN)
+        floor = noise_floor(outside) if above else 0.0
+        level = 0.5 * (body + air - floor * MEDIAN / MEAN)
     noise = 1.4826 * float(np.median(np.abs(outside - air)))
     step = abs(body - air)
+    dark = air - floor * MEDIAN / MEAN
+    if not above or level - dark < 2.0 * EMPTY * floor:
+        floor = 0.0
     if step > _FAINT * noise:
-        return SlabLevel(level, above, floor)
+        return SlabLevel(level, above, floor, dark)
     text = f"{where}: body and background differ by {step:.3g} grey levels, noise {noise:.2g}; look there"
-    return SlabLevel(level, above, floor, (Notice("low-contrast", text),))
+    return SlabLevel(level, above, floor, dark, (Notice("low-contrast", text),))
 
 
 def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]:
