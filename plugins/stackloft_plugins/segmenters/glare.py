@@ -1,11 +1,10 @@
-r"""Reflections at the body's edge on a light plate: narrow bays in the outline, as light as the plate.
+r"""Reflections at the body's edge on a light plate: narrow bays, lighter than the plate before them.
 
 ::
 
      ______            A lamp mirrored on wet flesh is as light as the plate, and where it reaches the edge
-     the
-    |    .-´  plate    outline runs around it. Such a bay is cut off from lip to lip; a crack or a gap between
-    |   ( glare        two limbs is darker than the open plate, for it lies in the body's own shade, or wider.
+    |    .-´  plate    the outline runs around it. Such a bay is cut off from lip to lip. A crack, or the gap
+    |   ( glare        behind an ear, is no lighter than the plate before its mouth, and stays.
     |    `-.
     |______|
 
@@ -32,8 +31,10 @@ _LARGEST = 0.03
 """Of the body's area: a larger bay is none."""
 _SMALLEST = 5.0
 """Square pixels, likewise."""
-_AS_LIGHT = 0.2
-"""Of the step: a bay's lightest pixels are no further below the open plate's level."""
+_LIGHTER = 0.07
+"""Of the step: by so much a reflection's lightest pixels are lighter than the plate before its mouth."""
+_BEFORE = 11
+"""Pixels: side of the square that is looked at around a bay for the plate before it."""
 _TOLD = 0.002
 """Of the body's area."""
 _SOFT = 0.7
@@ -72,13 +73,13 @@ def without_glare(grey: Grey, level: float | FloatArray, edge: Edge) -> tuple[Gr
     bays = [bay for bay in _bays(outline) if _SMALLEST <= abs(_area(bay)) <= _LARGEST * area]
     if not bays:
         return grey, 0.0
-    plate = _open_plate(grey, mask)
     light = np.zeros(mask.shape, np.uint8)
     for bay in bays:
         inside = np.zeros(mask.shape, np.uint8)
         cv2.fillPoly(inside, [bay.astype(np.int32)], 1)
-        own = grey[(inside > 0) & (mask == 0)]
-        if len(own) and float(np.percentile(own, 10)) <= plate + _AS_LIGHT * step:
+        around = cv2.dilate(inside, np.ones((_BEFORE, _BEFORE), np.uint8))
+        own, before = grey[(inside > 0) & (mask == 0)], grey[(around > inside) & (mask == 0)]
+        if len(own) and len(before) and _lighter(own, before) >= _LIGHTER * step:
             light |= inside
     light[mask > 0] = 0
     return _filled(grey, level, step, mask, light), float(np.count_nonzero(light)) / area
@@ -105,13 +106,9 @@ def _filled(grey: Grey, level: float | FloatArray, step: float, mask: Mask, bays
     return np.where(near, np.maximum(grey, put), grey)
 
 
-def _open_plate(grey: Grey, mask: Mask) -> float:
-    """Return the plate's usual level away from the body's shade, or all of it where little is seen."""
-    for near in (25, 9):
-        far = cv2.dilate(mask, np.ones((near, near), np.uint8)) == 0
-        if np.count_nonzero(far) > 100:
-            return float(np.median(grey[far]))
-    return float(np.median(grey[mask == 0]))
+def _lighter(own: Grey, before: Grey) -> float:
+    """Return by how much the lightest pixels of a bay are lighter than the plate before it."""
+    return float(np.median(before) - np.percentile(own, 15))
 
 
 def _bays(outline: IntArray) -> list[IntArray]:

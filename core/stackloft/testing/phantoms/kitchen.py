@@ -5,8 +5,9 @@ r"""What a kitchen table adds to a photograph: reflections, a shadow, a ring of 
         .  ______          glare     lamps mirrored on wet flesh: small, soft, nearly white
          _/ o    \_ :      shadow    beside the body, on one side, soft
       . (     o    ):      juice     a thin film around the body, of its own colour, uneven
-         \_______/ ::      crumbs    specks of flesh on the plate
-          ´´´´´´ .         mishaps   one slice out of focus, one with a deep shadow across the plate
+         \_______/ ::(     crumbs    specks of flesh on the plate
+          ´´´´´´ .         mishaps   a slice out of focus, one with a deep shadow across the plate, some with
+                                     a lamp mirrored on the plate, at the picture's right edge
 """
 
 from __future__ import annotations
@@ -45,6 +46,10 @@ class Kitchen:
     """Number of the slice that is out of focus, from 1; 0: none"""
     shaded: int = 0
     """Number of the slice with a deep shadow over half the plate"""
+    lamps: tuple[int, ...] = ()
+    """Numbers of the slices with a lamp mirrored on the plate"""
+    lamp: float = 9.0
+    """How far the mirrored lamp reaches into the picture, mm"""
 
     def plate(
         self, ground: FloatArray, covered: FloatArray, pixel_size: float, seed: int, index: int
@@ -61,6 +66,8 @@ class Kitchen:
         ground = ground * light
         specks = self._specks(rng, covered, away, pixel_size)
         painted: FloatArray = ground + (_CRUMB - ground) * specks
+        if index in self.lamps:
+            painted = painted + (_LAMP - painted) * self._mirrored(covered.shape, pixel_size)
         return painted
 
     def flesh(
@@ -97,6 +104,14 @@ class Kitchen:
         """Return the light where something stands before the lamp."""
         across = np.linspace(-1, 1, shape[1])[None, :] + 0.3 * np.linspace(-1, 1, shape[0])[:, None]
         return 1 - 0.42 / (1 + np.exp(-across * 30))
+
+    def _mirrored(self, shape: tuple[int, ...], pixel_size: float) -> FloatArray:
+        """Return how much of each pixel of the plate is lamp: half an ellipse upon the right edge."""
+        y, x = np.indices(shape) * pixel_size
+        aside, along = x - x.max(), y - 0.5 * y.max()
+        far = np.hypot(aside / self.lamp, along / (1.4 * self.lamp))
+        lamp: FloatArray = np.clip((1 - far) * self.lamp / pixel_size + 0.5, 0, 1)
+        return lamp
 
     def _specks(
         self, rng: np.random.Generator, covered: FloatArray, away: FloatArray, pixel_size: float
