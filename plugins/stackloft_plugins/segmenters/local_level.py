@@ -63,10 +63,10 @@ def local_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
     if within is None or beyond is None:
         return None
     half = 0.5 * (within + beyond)
-    along = half[inner | outer]
-    if float(along.std()) < UNEVEN * edge.contrast:
+    beside = half[inner | outer]
+    if float(beside.std()) < UNEVEN * edge.contrast:
         return None
-    moved = half - float(np.median(along))
+    moved = half - float(np.median(beside))
     furthest = _FURTHEST * edge.contrast
     return np.asarray(level + np.clip(moved, -furthest, furthest), dtype=np.float64)
 

@@ -27,7 +27,7 @@ from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge
 
 UNEVEN = 0.05
-"""Of the contrast: standard deviation around the outline above which the level is made local."""
+"""Of the step: standard deviation along the outline of what lies beside it, above which it is not even."""
 _REACH = 6.0
 _SAMPLES = 49
 _POINTS = 20
@@ -56,7 +56,7 @@ _SMOOTH = 6.0
 def stretch_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
     """Return the level pixel by pixel, (rows, columns).
 
-    Returns None when one level serves, or when the outline is short, lies at the picture's border, or has
+    Returns None when what lies beside the outline is even, when it is short, lies at the border, or has
     edges unlike the model.
     """
     found = np.full(grey.shape, level, dtype=np.float64)
@@ -69,8 +69,7 @@ def stretch_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
         points, shift, step = more
         found += _spread(grey.shape, points, shift)
         np.clip(found, level - _FURTHEST * step, level + _FURTHEST * step, out=found)
-    column, row = _pixels(points, grey.shape)
-    return found if float(found[row, column].std()) >= UNEVEN * edge.contrast else None
+    return found
 
 
 def _along(above: Grey, edge: Edge, slack: float) -> tuple[FloatArray, FloatArray, float] | None:
@@ -98,6 +97,8 @@ def _along(above: Grey, edge: Edge, slack: float) -> tuple[FloatArray, FloatArra
     calm = np.median([np.roll(levels, 1), levels, np.roll(levels, -1)], axis=0)
     along = (np.arange(len(points)) + 0.5) / len(points)
     step = float(np.median(profiles[chosen, 0] - profiles[chosen, -1]))
+    if float(profiles[np.ix_(chosen, across > 1.5)].std(axis=0).max()) < UNEVEN * step:
+        return None
     return points, np.interp(along, (chosen + 0.5) / count, calm, period=1.0), step
 
 
