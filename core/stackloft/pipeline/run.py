@@ -34,6 +34,7 @@ from stackloft.pipeline.provenance import provenance_of
 from stackloft.pipeline.recipe_file import recipe_of
 from stackloft.pipeline.request import ALL_METHODS, MeasureRequest
 from stackloft.pipeline.section_rows import section_rows
+from stackloft.pipeline.suspects import with_suspects
 from stackloft.pipeline.workbench import Workbench
 
 
@@ -159,7 +160,7 @@ def _run_methods(
         except StackloftError as error:
             errors.append(error)
             if (not every and not rows) or len(errors) == len(methods):
-                raise errors[0] from None
+                raise with_suspects(errors[0], bench.made.values()) from None
             rows[method.name] = MethodRow(None, None, 0.0, str(error))
     primary = _primary(rows) if every else methods[0].name
     made = [bench.made[name] for name in works[primary]]
