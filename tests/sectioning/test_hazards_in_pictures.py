@@ -17,7 +17,7 @@ from stackloft.testing.phantoms.reference_object import ReferenceObject
 from stackloft_plugins.readers.photos import PhotosReader
 from stackloft_plugins.segmenters.histogram import HistogramSegmenter
 
-STACKS = [(name, seed) for name in ("potato", "apple", "meat", "ellipsoid") for seed in (1, 2, 3)]
+STACKS = [(name, seed) for name in ("potato", "apple", "meat", "ellipsoid") for seed in (1, 2)]
 SECTIONS = 16
 FIGURE = dict.fromkeys(
     ("wrong-order", "slice-missing", "slice-doubled", "slice-odd", "motion"), r"\.jpg.*\d"
@@ -30,7 +30,7 @@ FIGURE = dict.fromkeys(
 COIN = ReferenceObject("disc", 24.25)
 
 
-def written(folder, name, seed, pixel_size=0.3, **options):
+def written(folder, name, seed, pixel_size=0.5, **options):
     own = {"seed": seed} if name == "potato" else {}
     phantom = phantoms.make(name, rotation=None if name == "meat" else seed, **own)
     camera = Photographs(

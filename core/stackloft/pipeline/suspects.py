@@ -26,7 +26,8 @@ def with_suspects(error: StackloftError, products: Iterable[Any]) -> StackloftEr
     >>> from dataclasses import replace
     >>> cuts = phantoms.make("apple").contour_stack(5)
     >>> notice = Notice("border-contact", "b.jpg: is cut off there; photograph it whole")
-    >>> print(with_suspects(InputError("cannot be joined", fix="cut thinner"), [replace(cuts, notices=(notice,))]))
+    >>> suspected = replace(cuts, notices=(notice,))
+    >>> print(with_suspects(InputError("cannot be joined", fix="cut thinner"), [suspected]))
     cannot be joined; fix: look first at b.jpg: is cut off there; else cut thinner
     """
     stacks = [item for item in products if isinstance(item, ContourStack)]
