@@ -10,7 +10,7 @@ r"""How far noise lifts the background of a magnitude picture.
 The level half-way between background and body is half-way between *no signal* and the body: an edge pixel,
 half of it body, lies far above the noise and is not lifted. CT's noise is symmetric and lifts nothing.
 
-Source: Gudbjartsson & Patz (1995), Magn. Reson. Med. 34:910.
+Source: Gudbjartsson & Patz (1995), Magnetic Resonance in Medicine 34:910.
 """
 
 from __future__ import annotations
