@@ -26,6 +26,11 @@ class OwnSink:
         self._sink: Sink | None = None
         self._do(lambda: self._made(make))
 
+    @property
+    def sees_pictures(self) -> bool:
+        """Whether the sink may look at pictures: a plug-in's may, the run's own follows contours alone."""
+        return self._step is not None and self.error is None
+
     def begin(self, segmentation: Segmentation) -> None:
         """Hand on the segmentation."""
         self._do(lambda: self._alive.begin(segmentation))
@@ -93,7 +98,8 @@ def decode_once(
     try:
         for sink in (*own, *others):
             sink.begin(segmentation)
-        for index, picture, section in decoded_ahead(segmentation):
+        looked_at = bool(others) or any(mine.sees_pictures for mine in own)
+        for index, picture, section in decoded_ahead(segmentation, pictures=looked_at):
             for sink in (*own, *others):
                 sink.add(index, picture, section)
             if all(mine.error for mine in own):

@@ -16,10 +16,10 @@ AHEAD = 3
 T = TypeVar("T")
 
 
-def worked_ahead(count: int, work: Callable[[int], T]) -> Iterator[T]:
+def worked_ahead(count: int, work: Callable[[int], T], ahead: int = AHEAD) -> Iterator[T]:
     """Yield ``work(0)`` … ``work(count - 1)`` in order, worked out a little ahead.
 
-    Two threads work at most `AHEAD` numbers ahead of the one in hand. Closing the iterator, or an error in
+    Two threads work at most `ahead` numbers ahead of the one in hand. Closing the iterator, or an error in
     one piece of work, ends the work on those not begun.
 
     Examples
@@ -32,7 +32,7 @@ def worked_ahead(count: int, work: Callable[[int], T]) -> Iterator[T]:
     try:
         for index in range(count):
             waiting.append(pool.submit(work, index))
-            if len(waiting) > AHEAD:
+            if len(waiting) > ahead:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()

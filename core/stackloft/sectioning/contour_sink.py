@@ -6,12 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from stackloft.contracts.sink import Sink
 from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
-from stackloft.sectioning.ahead import Behind, worked_ahead
+from stackloft.sectioning.ahead import AHEAD, THREADS, Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
@@ -25,6 +27,8 @@ TOGETHER = 8
 """Slices traced together."""
 HELD = 4_000_000
 """Bytes: slices whose fields take more are traced without waiting for others."""
+LARGE = 4_000_000
+"""Pixels: of larger pictures no more are worked on than there are threads."""
 _NAMED = 3  # slices named in a notice that stands for several
 
 
@@ -68,6 +72,8 @@ class ContourSink:
         one = SliceToTrace(section_field, (row, column), stack.shape, stack.names[index])
         self._waiting.append((index, one))
         held = sum(slice_.section.values.nbytes for _, slice_ in self._waiting)
+        if held > HELD:
+            self._behind.settle()
         if len(self._waiting) == TOGETHER or held > HELD:
             self._hand_over()
         if len(self._waiting) == 1 and index == 0:  # where the first slice shows no body, seldom another does
@@ -165,17 +171,22 @@ def feed(segmentation: Segmentation, sinks: Sequence[Sink]) -> list[Any]:
     return [sink.end() for sink in sinks]
 
 
-def decoded_ahead(segmentation: Segmentation) -> Iterator[tuple[int, Picture, SectionField]]:
+def decoded_ahead(
+    segmentation: Segmentation, *, pictures: bool = True
+) -> Iterator[tuple[int, Picture, SectionField]]:
     """Yield slice number, picture and field in order, decoding and segmenting a little ahead.
 
-    Two threads work ahead (`worked_ahead`).
+    Two threads work ahead (`worked_ahead`), less far where pictures are large. Where nobody looks at the
+    `pictures`, an empty one is given and nothing of them stays in memory.
     """
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
         picture = segmentation.stack.decode(index)
-        return index, picture, segmentation.field_of(index, picture)
+        section = segmentation.field_of(index, picture)
+        return index, picture if pictures else np.zeros((0, 0), picture.dtype), section
 
-    yield from worked_ahead(len(segmentation), work)
+    rows, columns = segmentation.stack.shape
+    yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else THREADS)
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:

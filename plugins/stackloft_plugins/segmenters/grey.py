@@ -19,6 +19,9 @@ CHANNELS: dict[str, tuple[float, float, float]] = {
 }
 """Weights of red, green and blue; luminance is ITU-R BT.601, what MATLAB's rgb2gray takes."""
 
+_ROWS = 128
+"""Rows of a photograph whose colours are mixed at once."""
+
 
 def grey_levels(picture: NDArray[Any], channel: str = "luminance") -> Grey:
     """Return the grey levels of a picture, not rounded.
@@ -42,14 +45,28 @@ def grey_levels(picture: NDArray[Any], channel: str = "luminance") -> Grey:
         return picture.astype(np.float32)
     red, green, blue = CHANNELS[channel]
     if picture.dtype == np.uint8:  # by OpenCV: a third of the time on photographs
-        planes = cv2.split(np.ascontiguousarray(picture))
-        mixed = cv2.addWeighted(planes[0], red, planes[1], green, 0.0, dtype=cv2.CV_32F)
-        return np.asarray(cv2.scaleAdd(planes[2].astype(np.float32), blue, mixed), dtype=np.float32)
+        levels = np.empty(picture.shape[:2], dtype=np.float32)
+        for top in range(0, len(picture), _ROWS):  # what is in between stays small
+            planes = cv2.split(np.ascontiguousarray(picture[top : top + _ROWS]))
+            mixed = cv2.addWeighted(planes[0], red, planes[1], green, 0.0, dtype=cv2.CV_32F)
+            levels[top : top + _ROWS] = cv2.scaleAdd(planes[2].astype(np.float32), blue, mixed)
+        return levels
     parts = [np.ascontiguousarray(picture[..., plane], dtype=np.float32) for plane in range(3)]
     whole: Grey = red * parts[0]
     whole += green * parts[1]
     whole += blue * parts[2]
     return whole
+
+
+def single(level: float) -> float:
+    """Return a level as grey levels in single precision have it, so that all comparisons with it agree.
+
+    Examples
+    --------
+    >>> bool(np.float32(0.1) > single(0.1))
+    False
+    """
+    return float(np.float32(level))
 
 
 def median_filtered(grey: Grey) -> Grey:

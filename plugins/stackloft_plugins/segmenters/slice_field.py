@@ -17,7 +17,7 @@ from stackloft_plugins.segmenters.body_window import background_of, body_window,
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.flat_field import fit_light
 from stackloft_plugins.segmenters.glare import glare_notice, without_glare
-from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered
+from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered, single
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import local_levels
@@ -94,8 +94,8 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
         grey, share = without_glare(grey, level if local is None else local, edge)
         notices += glare_notice(share, name)
     return SectionField(
-        values=read_only(grey.astype(np.float64)),
-        level=level,
+        values=read_only(grey),
+        level=single(level),
         offset=(window[0].start, window[1].start),
         threshold=sign * level,
         local_levels=local,
