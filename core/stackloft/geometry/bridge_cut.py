@@ -17,6 +17,7 @@ from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 from stackloft.geometry.bridge_edges import BridgeCut, CutLine, assembled, source
+from stackloft.geometry.plane_nodes import centred_nodes
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area
 
@@ -24,8 +25,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-CANDIDATES = 100
-"""Vertices of a loop between which chords are tried."""
+CANDIDATES = 400
+"""Vertices of a loop between which chords are tried, at most: all, so that no start point decides."""
 SAMPLES = 9
 FEWEST = 2
 ASTRAY = 4.0
@@ -105,10 +106,7 @@ class _ChordCost:
         every = np.concatenate([*joined, *parted])
         low, high = every.min(axis=0), every.max(axis=0)
         self._step = float((high - low).max()) / 128.0
-        x, y = (
-            np.arange(a - 2 * self._step, b + 3 * self._step, self._step)
-            for a, b in zip(low, high, strict=True)
-        )
+        x, y = centred_nodes(low, high, self._step, 2)
         self._origin = np.array([x[0], y[0]])
         self._own = signed_distance(x, y, _dense(joined, self._step))
         self._other = signed_distance(x, y, _dense(parted, self._step))

@@ -21,8 +21,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.distance import pdist
 
+from stackloft.geometry.plane_nodes import centred_nodes
 from stackloft.geometry.polygon_distance import signed_distance
-from stackloft.geometry.shoelace import polygon_area
+from stackloft.geometry.shoelace import polygon_area, polygon_centroid
 from stackloft.model.arrays import FloatArray, frozen_ints
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.loop_links import bounding_box
@@ -128,10 +129,7 @@ def plane_grid(loops: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Return node coordinates of a grid of square cells around loops, mm."""
     low, high = bounding_box(loops)
     step = float((high - low).max()) / GRID
-    x, y = (
-        np.arange(a - MARGIN * step, b + (MARGIN + 1) * step, step) for a, b in zip(low, high, strict=True)
-    )
-    return x, y
+    return centred_nodes(low, high, step, MARGIN)
 
 
 def zero_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArray]:
@@ -159,7 +157,12 @@ def grid_lines(field: FloatArray, x: FloatArray, y: FloatArray) -> list[FloatArr
 
 
 def evened(points: FloatArray, most: int) -> FloatArray:
-    """Return a closed polygon with evenly spaced vertices, half as many as it has, at most `most`."""
+    """Return a closed polygon with evenly spaced vertices, half as many as it has, at most `most`.
+
+    It begins at the vertex farthest from the centre, wherever the line was begun.
+    """
+    first = int(np.argmax(np.round(np.linalg.norm(points - polygon_centroid(points), axis=1), 9)))
+    points = np.roll(points, -first, axis=0)
     return _even_vertices(np.concatenate([points, points[:1]]), min(most, max(24, len(points) // 2)))
 
 
