@@ -13,9 +13,9 @@ from stackloft.testing.phantoms.photographs import Photographs
 SLICES = 12
 
 
-def pictures(folder, shown):
+def pictures(folder, shown, rotation=None):
     """Write an ellipsoid's slices; `shown` gives each picture's z range seen; return body and thickness."""
-    body = phantoms.make("ellipsoid")
+    body = phantoms.make("ellipsoid", rotation=rotation)
     low, high = body.extent()
     pitch = (high - low) / SLICES
     inside = np.linspace(low + 0.02 * pitch, high - 0.02 * pitch, 33)
@@ -57,6 +57,22 @@ def test_silhouettes_are_put_where_they_are_sections(tmp_path):
         assert abs(off) < 0.003
     with pytest.raises(StackloftError, match="widest plane below"):
         volume(tmp_path, body, pitch, section="silhouette", plane="receding", camera_distance=600.0)
+
+
+@pytest.mark.parametrize(("tilt", "leans"), [(0.0, False), (20.0, False), (45.0, True)])
+def test_leaning_silhouettes_tell_what_that_costs(tmp_path, tilt, leans):
+    body, pitch = pictures(tmp_path, slabs, rotation=(tilt, 0, 0))
+    settings = {"reader": {"section": "silhouette"}}
+    result = stackloft.measure(tmp_path, pixel_size=0.5, thickness=pitch, settings=settings)
+    off = 100 * (result.objects[0].volume.value / body.volume - 1)
+    told = [notice.message for notice in result.warnings if notice.code != "end-guessed"]
+    assert bool(told) is leans
+    if not leans:
+        assert abs(off) < 0.4
+    else:
+        assert "drift aside" in told[0]
+        said = float(told[0].split("volume about ")[1].split(" %")[0])
+        assert said == pytest.approx(off, abs=0.3)
 
 
 def test_a_cap_is_left_out_and_tells_where_the_body_ends(tmp_path):

@@ -95,7 +95,8 @@ def _changes(
     for k in range(m - 1):
         beyond = np.arange(m) > k
         closer = np.delete(position - step * beyond, k + 1)
-        yield "doubled", k, k + 1, closer, np.delete(values, k + 1, axis=0)
+        if (np.diff(closer) > 0).all():  # unequal cuts may leave no room for it
+            yield "doubled", k, k + 1, closer, np.delete(values, k + 1, axis=0)
 
 
 def _swapped(values: FloatArray, k: int, other: int) -> FloatArray:

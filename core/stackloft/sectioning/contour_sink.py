@@ -17,6 +17,7 @@ from stackloft.sectioning.ahead import AHEAD, THREADS, Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
+from stackloft.sectioning.silhouettes import SETTLED
 from stackloft.sectioning.slab_contours import on_middle_planes
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
 from stackloft.sectioning.stack_hazards import stack_hazards
@@ -117,7 +118,7 @@ class ContourSink:
     def _mistakes(self, sections: list[Section]) -> tuple[Notice, ...]:
         """Return what the sections of photographs say of mistakes; a scanner takes its slices in order."""
         stack = self._begun.stack
-        if stack.kind is SectionKind.SLAB:
+        if stack.kind is SectionKind.SLAB or SETTLED in stack.provenance:
             return ()
         return stack_hazards(sections, float(stack.pixel_spacing.max()))
 

@@ -25,7 +25,10 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Segmentation
 from stackloft.model.slice_stack import SectionKind
+from stackloft.sectioning.stack_hazards import MISTAKES
 
+SETTLED = "silhouettes"
+"""Key of the provenance of slices that were put at their widest planes; these no longer change evenly."""
 _INSIDE = 0.05  # of the gap: the widest plane keeps so far from its neighbours'
 _LEANS = 0.005
 
@@ -62,10 +65,11 @@ def at_their_planes(segmentation: Segmentation, contours: ContourStack) -> Segme
         positions=frozen_floats(planes),
         kind=SectionKind.FACE,
         thickness=None,
-        provenance={**stack.provenance, "silhouettes": "each at the widest plane of its slice"},
+        provenance={**stack.provenance, SETTLED: "each at the widest plane of its slice"},
     )
-    leaning = _leaning(outlines, areas, planes, float(stack.thickness.mean()))
-    return replace(segmentation, stack=settled, notices=(*segmentation.notices, *leaning))
+    mistakes = tuple(notice for notice in contours.notices if notice.code in MISTAKES)
+    more = (*_leaning(outlines, areas), *mistakes)
+    return replace(segmentation, stack=settled, notices=(*segmentation.notices, *more))
 
 
 def planes_of(upper: FloatArray, thickness: FloatArray, areas: FloatArray) -> FloatArray:
@@ -115,20 +119,29 @@ def _neck(k: int, upper: FloatArray, lower: FloatArray, areas: FloatArray) -> fl
     return float(upper[k] if abs(areas[k] - from_above) <= abs(areas[k] - from_below) else lower[k])
 
 
-def _leaning(
-    outlines: Sequence[FloatArray], areas: FloatArray, planes: FloatArray, thickness: float
-) -> tuple[Notice, ...]:
-    """Return a notice when outlines drift aside: a slice's outline is then wider than any of its planes."""
+def _leaning(outlines: Sequence[FloatArray], areas: FloatArray) -> tuple[Notice, ...]:
+    """Return a notice when outlines drift aside by more than they grow or shrink from slice to slice.
+
+    From one face of a slice to the other the outline moves outwards by g + d·cos θ, g being its growth and
+    d the drift. The part of the smaller face that sticks out beyond the larger one widens the silhouette:
+    ∫ max(0, −g − d·cos θ) ds = w·(√(d² − g²) − g·arccos(g/d)), w being the width across the drift.
+    """
     middles = np.array([polygon_centroid(outline) for outline in outlines])
-    drift = np.gradient(middles, planes, axis=0) * thickness
-    length = np.linalg.norm(drift, axis=1)
-    across = np.column_stack([-drift[:, 1], drift[:, 0]]) / np.maximum(length, 1e-300)[:, None]
+    step = np.gradient(middles, axis=0)
+    drift = np.linalg.norm(step, axis=1)
+    rims = np.array([
+        float(np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1).sum()) for outline in outlines
+    ])  # fmt: skip
+    growth = np.minimum(np.abs(np.gradient(areas)) / rims, drift)
+    across = np.column_stack([-step[:, 1], step[:, 0]]) / np.maximum(drift, 1e-300)[:, None]
     width = np.array([float(np.ptp(outline @ way)) for outline, way in zip(outlines, across, strict=True)])
-    share = float((length * width).sum() / areas.sum())
+    part = growth / np.maximum(drift, 1e-300)
+    excess = width * (np.sqrt(drift**2 - growth**2) - growth * np.arccos(np.clip(part, 0, 1)))
+    share = float(excess.sum() / areas.sum())
     if share < _LEANS:
         return ()
     message = (
-        f"the silhouettes drift aside by {length.mean():.2g} mm from slice to slice, so that they are wider "
+        f"the silhouettes drift aside by {drift.mean():.2g} mm from slice to slice, so that they are wider "
         f"than the sections: volume about {100 * share:.1f} % high; photograph the cut faces without walls, "
         "or cut across the body's own axis"
     )

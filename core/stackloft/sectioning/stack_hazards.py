@@ -26,6 +26,8 @@ from stackloft.model.contour_stack import Section
 from stackloft.model.notices import Notice
 from stackloft.sectioning.misalignment import misaligned
 
+MISTAKES = frozenset({"wrong-order", "slice-missing", "slice-doubled", "slice-odd", "motion", "misaligned"})
+"""Codes of what is told here."""
 FEWEST = 8
 """Sections, without the small ones at the ends."""
 SMALL = 0.3
