@@ -147,5 +147,5 @@ def _drawn(
     mask = np.zeros(window, np.uint8)
     outline = np.round((shape.outline.astype(np.float64) + 0.5) * step - 0.5 - corner).astype(np.int32)
     cv2.drawContours(mask, [outline], -1, 1, cv2.FILLED)
-    reach = 2 * round(margin) + 1
-    return np.asarray(cv2.dilate(mask, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach))) > 0)
+    # by distance: dilating by a disc as wide as a coin's margin takes a second
+    return np.asarray(cv2.distanceTransform(1 - mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) <= round(margin))
