@@ -26,7 +26,7 @@ EVENNESS = 10.0
 """λ: what uneven spacing costs against the slope of the columns."""
 HOLD = 0.3
 """Pull to the first guess, which keeps all columns from sliding round together."""
-ITERATIONS = 12
+ITERATIONS = 4
 LEAST_SHARE = 0.25
 """Sections that lie close together count for spacing as if this fraction of the mean pitch apart, lest
 their points bunch."""
