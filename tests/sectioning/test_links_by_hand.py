@@ -92,5 +92,8 @@ def test_stack_toml_fixes_links(tmp_path):
     one = stackloft.measure(tmp_path, "loft", ends="face").objects[0]
     (tmp_path / "stack.toml").write_text("[slice.5]\nlinks = []\n", encoding="utf-8")
     two = stackloft.measure(tmp_path, "loft", ends="face").objects[0]
+    (tmp_path / "stack.toml").write_text("[slice.5]\nlinks = [[1, 1]]\n", encoding="utf-8")
+    same = stackloft.measure(tmp_path, "loft", ends="face").objects[0]
+    assert same.area.value == pytest.approx(one.area.value, rel=1e-3)
     assert two.area.value > 1.2 * one.area.value
     assert two.volume.value == pytest.approx(9.0 * np.pi * 100.0, rel=1e-3)

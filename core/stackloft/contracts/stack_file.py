@@ -73,6 +73,7 @@ _Length = Annotated[float, BeforeValidator(length_of), _Positive]
 _Shift = Annotated[float, BeforeValidator(length_of)]
 _Lengths = Annotated[tuple[float, ...], BeforeValidator(lengths_of)]
 _Loop = Annotated[int, Field(ge=1)]
+_Link = Annotated[tuple[_Loop, _Loop], Field(strict=False)]
 _STRICT = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
@@ -86,7 +87,7 @@ class SliceOverride(BaseModel):
     mask: Annotated[str, AfterValidator(bare_name)] | None = None
     """A picture of the same size, white where the body is."""
     skip: bool = False
-    links: Annotated[tuple[tuple[_Loop, _Loop], ...], Field(strict=False)] | None = None
+    links: Annotated[tuple[_Link, ...], Field(strict=False)] | None = None
     """Which loops of this slice go on as which of the next one, each numbered from 1, the largest first."""
     pixel_size: _Length | None = None
 

@@ -27,6 +27,11 @@ BoolArray = NDArray[np.bool_]
 
 CANDIDATES = 400
 """Vertices of a loop between which chords are tried, at most: all, so that no start point decides."""
+FEWER = 80
+"""The same where loops fall into many parts: a jagged outline's, not a branch's."""
+MANY = 3
+MOST = 12
+"""More cuts than this in one step are no body's: crumpled outlines fall apart like that."""
 SAMPLES = 9
 FEWEST = 2
 ASTRAY = 4.0
@@ -52,13 +57,15 @@ def cut_bridges(
     Returns
     -------
     BridgeCut or None
-        None when no chord does it.
+        None when no chord does it, or more than `MOST` were needed.
     """
+    if splits + merges > MOST:
+        return None
     lines = [
         CutLine(p, np.column_stack([np.full(len(p), w), np.arange(len(p))]), np.zeros(len(p), dtype=np.int64))
         for w, p in enumerate(joined)
     ]
-    cost = _ChordCost(joined, parted)
+    cost = _ChordCost(joined, parted, CANDIDATES if splits + merges < MANY else FEWER)
     chords: list[tuple[tuple[int, int], tuple[int, int]]] = []
     for kind in ["merge"] * merges + ["split"] * splits:
         found = cost.best_merge(lines) if kind == "merge" else cost.best_split(lines)
@@ -102,7 +109,8 @@ def _merge(one: CutLine, i: int, two: CutLine, j: int, chord: int) -> CutLine:
 class _ChordCost:
     """What chords cost."""
 
-    def __init__(self, joined: list[FloatArray], parted: list[FloatArray]) -> None:
+    def __init__(self, joined: list[FloatArray], parted: list[FloatArray], candidates: int) -> None:
+        self._candidates = candidates
         every = np.concatenate([*joined, *parted])
         low, high = every.min(axis=0), every.max(axis=0)
         self._step = float((high - low).max()) / 128.0
@@ -136,7 +144,7 @@ class _ChordCost:
         return choice
 
     def _split_of(self, line: CutLine) -> tuple[float, int, int] | None:
-        chosen = _spread(line)
+        chosen = _spread(line, self._candidates)
         if len(chosen) < FEWEST or self._count < FEWEST:
             return None
         label = self._labels[self._tree.query(line.points)[1]]
@@ -164,7 +172,9 @@ class _ChordCost:
             for q, two in enumerate(lines[p + 1 :], start=p + 1):
                 if polygon_area(one.points) > 0.0 and polygon_area(two.points) > 0.0:
                     continue
-                a, b = np.meshgrid(_spread(one), _spread(two), indexing="ij")
+                a, b = np.meshgrid(
+                    _spread(one, self._candidates), _spread(two, self._candidates), indexing="ij"
+                )
                 if not a.size:
                     continue
                 i, j = a.ravel(), b.ravel()
@@ -175,10 +185,10 @@ class _ChordCost:
         return choice
 
 
-def _spread(line: CutLine) -> IntArray:
+def _spread(line: CutLine, candidates: int) -> IntArray:
     """Return vertices to try, evenly spread, none of them an end of an earlier chord."""
     free = np.flatnonzero((line.chord == 0) & (np.roll(line.chord, 1) == 0))
-    stride = max(1, len(free) // CANDIDATES)
+    stride = max(1, len(free) // candidates)
     return free[::stride]
 
 

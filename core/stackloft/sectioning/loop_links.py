@@ -12,6 +12,8 @@ from stackloft.sectioning.section_regions import OUTSIDE, Regions, overlap, shar
 
 BELONG = 0.3
 """Overlap, as a fraction of the smaller region, from which two regions are one."""
+KNOT = 8
+"""Links of a knot that is worth untangling."""
 PERHAPS = 0.03
 """Overlap from which two regions that have no other partner are taken for one, with a warning."""
 
@@ -76,6 +78,8 @@ def simpler_links(before: Regions, after: Regions, linked: LinkedLoops) -> Itera
     """
     links, weak = _linked_pairs(before, after)
     own = [(i, j) for i, j in links if i in linked.before and j in linked.after]
+    if len(own) > KNOT:
+        return
     share = {
         (i, j): overlap([before.loops[i]], [after.loops[j]]) if before.holes[i] == after.holes[j] else 1.0
         for i, j in own
