@@ -102,14 +102,21 @@ def reordered(stack, seed):
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("label", ["torus upright", "blind-hole leaning"])
-def test_loop_order_and_start_points_decide_nothing(label, seed):
+@pytest.mark.parametrize(
+    ("label", "allowed"),
+    [
+        ("blind-hole leaning", 1e-9),
+        ("ring-branch leaning", 1e-9),
+        ("torus upright", 1e-5),  # its cuts have mirror images of equal length, and one must be taken
+    ],
+)
+def test_loop_order_and_start_points_decide_nothing(label, allowed, seed):
     stack = stack_of(dict(kind_poses())[label], 11)
     base, other = (
         SurfaceGauss().integrate(LoftReconstructor().reconstruct(s)) for s in (stack, reordered(stack, seed))
     )
-    assert other.volume == pytest.approx(base.volume, rel=1e-5)
-    assert other.area == pytest.approx(base.area, rel=1e-5)
+    assert other.volume == pytest.approx(base.volume, rel=allowed)
+    assert other.area == pytest.approx(base.area, rel=allowed)
 
 
 def test_a_mirrored_body_measures_the_same():

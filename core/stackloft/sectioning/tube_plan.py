@@ -106,7 +106,9 @@ def _levels(contours: ContourStack) -> tuple[list[Level], FloatArray]:
             curve_polygon(curves, k + i, float(curves.lengths[k + i]) / SIDES) for i in range(len(loops))
         ]
         own = curves.areas[k : k + len(loops)]
+        # From left to right: the order in which loops were given decides no tie.
         kept = np.flatnonzero(own >= SPECK * own.max(initial=0.0))
+        kept = kept[np.lexsort(np.round(curves.centroids[k + kept], 6).T)]
         level = make_level(
             section.z, [loops[i] for i in kept], [polygons[i] for i in kept], section.name, number
         )
