@@ -134,7 +134,7 @@ def check(folder, name, plate, seed, repairs=REPAIRS, **options):
 
 @pytest.mark.parametrize(("plate", "how"), [("white", "skip, mask"), ("black", "threshold, mask")])
 def test_a_repaired_stack_measures_right(tmp_path, plate, how):
-    before, rows = check(tmp_path, "banana", plate, 1, [how], sections=10)
+    before, rows = check(tmp_path, "banana", plate, 1, [how])
     assert before
     assert (np.abs([row[1:] for row in rows]) <= np.array(BOUNDS)).all()
 

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
+from stackloft.model.contour_stack import Loop, Section
 from stackloft.model.errors import InputError
+from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField
+from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.marching_squares import closed_lines
 from stackloft.sectioning.tracing import TraceRules, trace_field
 from stackloft.testing.phantoms.coverage import coverage
@@ -111,10 +114,38 @@ def test_fat_is_no_hole():
 
 
 def test_glare_is_filled_and_said():
-    result = traced(grey(ellipse(60, 50), ellipse(5, 4)[::-1]), name="cut_3.jpg")
+    result = traced(grey(ellipse(60, 50), ellipse(2.6, 2)[::-1]), name="cut_3.jpg")
     assert len(result.loops) == 1
     assert result.notices[0].code == "hole-filled"
     assert "cut_3.jpg" in result.notices[0].message
+
+
+def test_what_may_be_a_holes_end_is_left_to_the_slices_beside_it():
+    result = traced(grey(ellipse(60, 50), ellipse(5, 4)[::-1]), name="cut_3.jpg")
+    assert len(result.loops) == 1
+    assert not result.notices
+    ((hole, notice),) = result.perhaps
+    assert hole.hole
+    assert notice.code == "hole-filled"
+    assert "cut_3.jpg" in notice.message
+
+
+def test_a_holes_end_is_kept_beside_a_hole_and_filled_elsewhere():
+    angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    outline, bore, end = Loop(30 * ring), Loop(8 * ring[::-1], hole=True), Loop(2 * ring[::-1], hole=True)
+    sections = [
+        Section(0.0, (outline, bore), "a"),
+        Section(1.0, (outline,), "b"),
+        Section(2.0, (outline,), "c"),
+    ]
+    told = Notice("hole-filled", "c: filled")
+    kept, left_out = with_limbs(sections, [[], [(end, told)], []])
+    assert kept[1].loops == (outline, end)
+    assert left_out == []
+    kept, left_out = with_limbs(sections, [[], [], [(end, told)]])
+    assert kept[2].loops == (outline,)
+    assert left_out == [told]
 
 
 def test_crumbs_go_unsaid_a_second_object_is_said_a_branch_is_kept():
