@@ -11,11 +11,12 @@ from stackloft.geometry.loft_rows import closed_rows
 from stackloft.geometry.skin import skin
 from stackloft.model.arrays import FloatArray, read_only
 from stackloft.model.contour_stack import ContourStack
-from stackloft.model.ends import End
+from stackloft.model.ends import End, EndKind
 from stackloft.model.errors import InputError
 from stackloft.model.lengths import parse_length
 from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
+from stackloft.sectioning.drawn import is_drawn
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import check_against_areas
@@ -55,10 +56,10 @@ class LoftReconstructor:
     height: float | None = option(None, "the body's whole length along the axis", unit="mm", gt=0)
     inner_ends: str = option(
         "auto",
-        "how cavities and pieces end that begin or end between two sections: as their areas tell (auto), or"
+        "how cavities and pieces end that begin or end between two sections: as their areas tell (areas), or"
         " flat on their own outermost section (face), when sections lie at the very heights of their floors"
-        " and roofs",
-        choices=("auto", "face"),
+        " and roofs; auto is face for drawn polygons with both ends told as faces, else areas",
+        choices=("auto", "areas", "face"),
     )
 
     api: ClassVar[str] = "1"
@@ -99,8 +100,10 @@ class LoftReconstructor:
         return LoftedSolid((shell,), reports, product.affine, notices)
 
     def _tubes(self, contours: ContourStack) -> LoftedSolid:
-        faces = self.inner_ends == "face"
         said, height = self._said(contours), self._height(contours)
+        faces = self.inner_ends == "face"
+        if self.inner_ends == "auto":
+            faces = all(end.kind is EndKind.FACE for end in said) and is_drawn(contours)
         return loft_tubes(contours, self.points, said, height, inner_faces=faces)
 
     def _said(self, contours: ContourStack) -> tuple[End, End]:
