@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stackloft.model.contour_stack import ContourStack, Loop, Section
+from stackloft.model.errors import InputError
 from stackloft.testing import phantoms
 from stackloft_plugins.integrators.polyhedral import Polyhedral
 from stackloft_plugins.integrators.surface_gauss import SurfaceGauss
@@ -148,3 +149,10 @@ def test_levels_a_hair_apart_add_no_area(count):
 
 def kind_poses():
     return [(label, phantom) for kind in phantoms.TOPOLOGY for label, phantom in kind.phantoms()]
+
+
+def test_a_skin_whose_columns_slipped_is_no_figure():
+    """A lying limb appears at once between two sections: 12 % of false area were once a figure."""
+    phantom = dict(kind_poses())["ring-branch flat"]
+    with pytest.raises(InputError, match="section_09: the loft folds"):
+        errors(stack_of(phantom, 53), phantom)

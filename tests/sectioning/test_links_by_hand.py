@@ -46,7 +46,7 @@ def crossed(links=None):
     """Two bars side by side, then two bars across them: loops that part and meet at once."""
     flat = (bar(0.0, 1.6, 6.0, 2.5), bar(0.0, -1.6, 6.1, 2.5))
     across = (bar(1.6, 0.0, 2.5, 6.0), bar(-1.6, 0.0, 2.5, 6.1))
-    sections = tuple(Section(0.5 * k, flat if k < 4 else across, f"s{k}") for k in range(8))
+    sections = tuple(Section(3.0 * k, flat if k < 4 else across, f"s{k}") for k in range(8))
     return ContourStack(sections, hints=Hints(links=links or {}))
 
 

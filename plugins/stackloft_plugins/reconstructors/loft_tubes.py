@@ -9,7 +9,9 @@ import numpy as np
 
 from stackloft.geometry.folds import folded_rows
 from stackloft.geometry.loft_rows import RowEnd, closed_rows
+from stackloft.geometry.patch_integrals import solid_integrals
 from stackloft.geometry.skin import skin
+from stackloft.geometry.swept_area import swept_area
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints, read_only
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.ends import End
@@ -31,6 +33,8 @@ from stackloft_plugins.reconstructors.end_reports import (
 
 SLIGHT = 0.05
 """Tubes thinner than this fraction of the largest section may fold unseen: a crumb, a tip of two sections."""
+SLIPPED = 0.02
+"""Area beyond what there is to go over between two rows, as a fraction of the whole skin's, that is none."""
 HAIR = 1e-3
 """A tube of one row alone is given this fraction of its size as height at most."""
 
@@ -86,6 +90,7 @@ def loft_tubes(
             raise fold_error(*folds[min(filled & folds.keys())])
         filled |= folds.keys()
     _check(skinned, contours, plan.areas)
+    _check_areas(skinned)
     reports = _reports(skinned, plan, contours.affine)
     notices = [
         *plan.traced.notices,
@@ -185,6 +190,28 @@ def _courses(
     return [(z, rest), *courses]
 
 
+def _check_areas(skinned: list[_Skinned]) -> None:
+    """Refuse skins with much more area between two rows than there is to go over: their columns slipped."""
+    found = []
+    for one in skinned:
+        rows = one.tube.rows
+        for k, (low, high) in enumerate(pairwise(rows), start=_first_patch(one)):
+            if k >= len(one.patches):
+                break
+            _, area = solid_integrals(one.patches[k : k + 1], (0.0, 0.0), np.eye(4), degree=4)
+            found.append((area, swept_area(low.loop.points, high.loop.points, high.z - low.z), low, high))
+    total = sum(area for area, *_ in found)
+    for area, needed, low, high in found:
+        if area - needed > SLIPPED * total:
+            raise fold_error(low.name, high.name)
+
+
+def _first_patch(one: _Skinned) -> int:
+    """Return the number of the row of patches that leaves the tube's first row: 1 after a pole."""
+    z = one.tube.rows[0].z
+    return int(one.patches[0, 0, 0, 0, 2] < z - 1e-12 * abs(z))
+
+
 def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
     """Return the sections after which a skin folds, with their names and the next ones'.
 
@@ -196,7 +223,7 @@ def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
         if size < SLIGHT * max(sizes):
             continue
         rows = one.tube.rows
-        first = int(one.patches[0, 0, 0, 0, 2] < rows[0].z - 1e-12 * abs(rows[0].z))
+        first = _first_patch(one)
         pairs = [
             (k, low, high)
             for k, (low, high) in enumerate(pairwise(rows))
