@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from stackloft.geometry.folds import folded_rows
 from stackloft.geometry.loft_rows import RowEnd, closed_rows
-from stackloft.geometry.patch_integrals import solid_integrals
 from stackloft.geometry.skin import skin
-from stackloft.geometry.swept_area import swept_area
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints, read_only
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.ends import End
 from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import Joint, JointRim, LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
-from stackloft.sectioning.equal_points import EqualSections, equal_points
+from stackloft.sectioning.equal_points import equal_points
 from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas, fold_error
 from stackloft.sectioning.stack_roofs import Roof
 from stackloft.sectioning.tube_ends import FACE, ON_SECTION, PlannedTube, TubeEnd, replace_row
@@ -30,22 +28,12 @@ from stackloft_plugins.reconstructors.end_reports import (
     is_plane,
     row_end,
 )
+from stackloft_plugins.reconstructors.skin_areas import Skinned, check_skin_areas, first_patch
 
 SLIGHT = 0.05
 """Tubes thinner than this fraction of the largest section may fold unseen: a crumb, a tip of two sections."""
-SLIPPED = 0.02
-"""Area beyond what there is to go over between two rows, as a fraction of the whole skin's, that is none."""
 HAIR = 1e-3
 """A tube of one row alone is given this fraction of its size as height at most."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Skinned:
-    """A tube as patches."""
-
-    tube: PlannedTube
-    sections: EqualSections
-    patches: FloatArray
 
 
 def loft_tubes(
@@ -90,7 +78,7 @@ def loft_tubes(
             raise fold_error(*folds[min(filled & folds.keys())])
         filled |= folds.keys()
     _check(skinned, contours, plan.areas)
-    _check_areas(skinned)
+    check_skin_areas(skinned)
     reports = _reports(skinned, plan, contours.affine)
     notices = [
         *plan.traced.notices,
@@ -106,7 +94,7 @@ def loft_tubes(
     )
 
 
-def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> _Skinned:
+def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> Skinned:
     rows = tube.rows
     if len(rows) == 1:  # both ends are planned beyond it
         hair = HAIR * float(np.ptp(rows[0].loop.points))
@@ -124,14 +112,14 @@ def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> _Skinned:
     equal = equal_points(stack, finer * count, kept)
     ends = (_row_end(tube.ends[0]), _row_end(tube.ends[1]))
     patches = skin(closed_rows(equal.points, equal.corners, ends))
-    return _Skinned(tube, equal, patches)
+    return Skinned(tube, equal, patches)
 
 
 def _row_end(end: TubeEnd) -> RowEnd:
     return RowEnd(0.0, pole=False) if end.planned is None else row_end(end.planned)
 
 
-def _shell(one: _Skinned) -> Shell:
+def _shell(one: Skinned) -> Shell:
     patches = one.patches[:, ::-1, :, ::-1] if one.tube.hole else one.patches
     return Shell(
         read_only(np.ascontiguousarray(patches)), (_shell_end(one.tube.ends[0]), _shell_end(one.tube.ends[1]))
@@ -158,7 +146,7 @@ def _joints(plan: TubePlan) -> tuple[Joint, ...]:
     )
 
 
-def _check(skinned: list[_Skinned], contours: ContourStack, areas: FloatArray) -> None:
+def _check(skinned: list[Skinned], contours: ContourStack, areas: FloatArray) -> None:
     """Hold the skins between the outermost sections against the sections' areas."""
     z = contours.positions
     volumes = []
@@ -174,9 +162,7 @@ def _check(skinned: list[_Skinned], contours: ContourStack, areas: FloatArray) -
     check_tubes_against_areas(volumes, _courses(skinned, z, areas), names)
 
 
-def _courses(
-    skinned: list[_Skinned], z: FloatArray, areas: FloatArray
-) -> list[tuple[FloatArray, FloatArray]]:
+def _courses(skinned: list[Skinned], z: FloatArray, areas: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
     """Return the areas' courses along the axis: of tubes with told faces each its own, of all others one."""
     rest, courses = areas.copy(), []
     for one in skinned:
@@ -190,29 +176,7 @@ def _courses(
     return [(z, rest), *courses]
 
 
-def _check_areas(skinned: list[_Skinned]) -> None:
-    """Refuse skins with much more area between two rows than there is to go over: their columns slipped."""
-    found = []
-    for one in skinned:
-        rows = one.tube.rows
-        for k, (low, high) in enumerate(pairwise(rows), start=_first_patch(one)):
-            if k >= len(one.patches):
-                break
-            _, area = solid_integrals(one.patches[k : k + 1], (0.0, 0.0), np.eye(4), degree=4)
-            found.append((area, swept_area(low.loop.points, high.loop.points, high.z - low.z), low, high))
-    total = sum(area for area, *_ in found)
-    for area, needed, low, high in found:
-        if area - needed > SLIPPED * total:
-            raise fold_error(low.name, high.name)
-
-
-def _first_patch(one: _Skinned) -> int:
-    """Return the number of the row of patches that leaves the tube's first row: 1 after a pole."""
-    z = one.tube.rows[0].z
-    return int(one.patches[0, 0, 0, 0, 2] < z - 1e-12 * abs(z))
-
-
-def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
+def _folds(skinned: list[Skinned]) -> dict[int, tuple[str, str]]:
     """Return the sections after which a skin folds, with their names and the next ones'.
 
     Levels put in lie closer together than their loops are known; between them nothing is looked for.
@@ -223,7 +187,7 @@ def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
         if size < SLIGHT * max(sizes):
             continue
         rows = one.tube.rows
-        first = _first_patch(one)
+        first = first_patch(one)
         pairs = [
             (k, low, high)
             for k, (low, high) in enumerate(pairwise(rows))
@@ -238,12 +202,12 @@ def _folds(skinned: list[_Skinned]) -> dict[int, tuple[str, str]]:
     return found
 
 
-def _reports(skinned: list[_Skinned], plan: TubePlan, affine: FloatArray) -> tuple[EndReport, EndReport]:
+def _reports(skinned: list[Skinned], plan: TubePlan, affine: FloatArray) -> tuple[EndReport, EndReport]:
     """Return what is told of the first and the last end: that of its largest piece, and what guesses cost."""
     return _side_report(skinned, plan.roofs[0], affine, 0), _side_report(skinned, plan.roofs[1], affine, 1)
 
 
-def _side_report(skinned: list[_Skinned], roofs: tuple[Roof, ...], affine: FloatArray, k: int) -> EndReport:
+def _side_report(skinned: list[Skinned], roofs: tuple[Roof, ...], affine: FloatArray, k: int) -> EndReport:
     reports: list[tuple[float, EndReport]] = []
     for one in skinned:
         end = one.tube.ends[k]
