@@ -102,10 +102,10 @@ def test_hiding_leaves_food_beside_it_alone():
     picture[60:160, 66:260] = 90
     picture[20:60, 20:60] = 120
     found = find_reference(picture, ReferenceKind.SQUARE)
-    hidden = hide(picture, found)
+    hidden = picture.copy()
+    hide(hidden, found)
     assert (hidden[20:60, 20:60] == 240).all()
     assert (hidden[60:160, 66:260] == 90).all()
-    assert picture[30, 30] == 120
 
 
 @pytest.mark.parametrize("dtype", [np.uint16, np.float32, np.int32])

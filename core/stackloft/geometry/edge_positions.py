@@ -46,6 +46,16 @@ _ASTRAY = 40.0
 """Times the usual misfit's square: what a profile may at most say against a place."""
 
 
+@dataclass(frozen=True, slots=True)
+class EdgeShape:
+    """What is the same all around an outline; pixels."""
+
+    blur: float
+    """Standard deviation"""
+    skin: float
+    """Width; 0 when none is seen"""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgePositions:
     """What was found in m profiles; lengths in pixels."""
@@ -54,12 +64,12 @@ class EdgePositions:
     """(m) outwards from the profiles' middle"""
     misfit: FloatArray
     """(m) root mean square of profile less model, over the step from ground to body"""
-    blur: float
-    skin: float
-    """Width; 0 when none is seen"""
+    shape: EdgeShape
 
 
-def edge_positions(profiles: FloatArray, reach: float, slack: float = 0.3) -> EdgePositions:
+def edge_positions(
+    profiles: FloatArray, reach: float, slack: float = 0.3, known: EdgeShape | None = None
+) -> EdgePositions:
     """Return the edge of each profile.
 
     Parameters
@@ -71,6 +81,8 @@ def edge_positions(profiles: FloatArray, reach: float, slack: float = 0.3) -> Ed
         Pixels.
     slack : float
         Pixels by which neighbouring profiles' positions usually differ.
+    known : EdgeShape, optional
+        What an earlier look at the same outline has found; not sought again then.
 
     Examples
     --------
@@ -82,38 +94,42 @@ def edge_positions(profiles: FloatArray, reach: float, slack: float = 0.3) -> Ed
     """
     scale = np.maximum(np.abs(profiles[:, 0] - profiles[:, -1]), 1e-9)
     levelled = (profiles - profiles.mean(axis=1, keepdims=True)) / scale[:, None]
-    best: dict[float, tuple[float, float, FloatArray]] = {}
-    for skin, blur in product(_SKINS, _BLURS):
-        left = _misfits(levelled, reach, blur, skin)
-        total = float(np.median(np.sqrt(left.min(axis=1))))
-        if skin not in best or total < best[skin][0]:
-            best[skin] = (total, blur, left)
-    skin = min(best, key=lambda width: best[width][0])
-    if best[skin][0] > CALLED_FOR * best[0.0][0]:
-        skin = 0.0
-    total, blur, left = best[skin]
+    shape = known or _edge_shape(levelled, reach)
+    left = _misfits(levelled, reach, shape)
+    total = _usual_misfit(left)
     usual = max(total**2, profiles.shape[1] * _FINEST**2)
     at = _smooth_way(np.minimum(left / usual, _ASTRAY), slack)
     line = np.arange(len(left))
     misfit = np.sqrt(left[line, at] / profiles.shape[1])
-    return EdgePositions(_between(_places(), left, at), misfit, blur, skin)
+    return EdgePositions(_between(_places(), left, at), misfit, shape)
+
+
+def _edge_shape(levelled: FloatArray, reach: float) -> EdgeShape:
+    """Return the blur, and the skin if one is called for, that describe the profiles best."""
+    shapes = [EdgeShape(blur, skin) for skin, blur in product(_SKINS, _BLURS)]
+    totals = {shape: _usual_misfit(_misfits(levelled, reach, shape)) for shape in shapes}
+    bare = min((shape for shape in shapes if not shape.skin), key=totals.__getitem__)
+    best = min(shapes, key=totals.__getitem__)
+    return bare if totals[best] > CALLED_FOR * totals[bare] else best
+
+
+def _usual_misfit(left: FloatArray) -> float:
+    return float(np.median(np.sqrt(left.min(axis=1))))
 
 
 def _places() -> FloatArray:
     return np.linspace(-FURTHEST, FURTHEST, round(2 * FURTHEST / _STEP) + 1)
 
 
-def _misfits(profiles: FloatArray, reach: float, blur: float, skin: float) -> FloatArray:
+def _misfits(profiles: FloatArray, reach: float, shape: EdgeShape) -> FloatArray:
     """Return each profile's squared misfit with its edge at each place, on the best ground, (m, places)."""
-    whole = (profiles**2).sum(axis=1)[:, None]
-    left = np.full((len(profiles), len(_places())), np.inf)
+    m, count = profiles.shape
+    explained = np.zeros((m, len(_places())))
     for ground in _GROUNDS:
-        bases = _bases(profiles.shape[1], reach, blur, skin, ground)
-        places, count, columns = bases.shape
-        flat = bases.transpose(1, 0, 2).reshape(count, places * columns)
-        fitted = (profiles @ flat).reshape(len(profiles), places, columns)
-        np.minimum(left, whole - (fitted**2).sum(axis=2), out=left)
-    return np.asarray(np.maximum(left, 0.0))
+        fitted = profiles @ _bases(count, reach, shape, ground)
+        fitted *= fitted
+        np.maximum(explained, fitted.reshape(m, -1, explained.shape[1]).sum(axis=1), out=explained)
+    return np.asarray(np.maximum((profiles**2).sum(axis=1)[:, None] - explained, 0.0))
 
 
 def _smooth_way(cost: FloatArray, slack: float) -> NDArray[np.int64]:
@@ -150,10 +166,11 @@ def _between(places: FloatArray, left: FloatArray, at: NDArray[np.int64]) -> Flo
 
 
 @lru_cache(maxsize=2 * len(_BLURS) * len(_SKINS) * len(_GROUNDS))
-def _bases(count: int, reach: float, blur: float, skin: float, ground: float) -> FloatArray:
-    """Return an orthonormal basis of the profiles with an edge at each place, (places, count, 3 or 4)."""
+def _bases(count: int, reach: float, shape: EdgeShape, ground: float) -> FloatArray:
+    """Return an orthonormal basis of the profiles with an edge at each place, (count, 3 or 4 · places)."""
     distance = np.linspace(-reach, reach, count)
     beyond = distance[None, :] - _places()[:, None]
+    blur, skin = shape.blur, shape.skin
     z = beyond / blur
     columns = [np.ones_like(z), ndtr(-z)]
     if ground:
@@ -163,8 +180,9 @@ def _bases(count: int, reach: float, blur: float, skin: float, ground: float) ->
     if skin:
         columns.append(_fading(-beyond, skin, blur))
     bases: FloatArray = np.linalg.qr(np.stack(columns, axis=2))[0]
-    bases.setflags(write=False)
-    return bases
+    flat = np.ascontiguousarray(bases.transpose(1, 2, 0).reshape(count, -1))
+    flat.setflags(write=False)
+    return flat
 
 
 def _fading(depth: FloatArray, width: float, blur: float) -> FloatArray:

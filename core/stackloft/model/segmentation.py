@@ -86,6 +86,8 @@ class Segmentation:
     neck: float | None = None
     """Bodies that touch are cut apart where the neck between them is narrower than this part of the thinner
     one's width; None: what hangs together is one body."""
+    luminance_alone: bool = False
+    """Whether `field_of` looks at the luminance of pictures alone."""
     before: tuple[Beyond, ...] = ()
     """Slices before the first one that the body may reach into, in order."""
     after: tuple[Beyond, ...] = ()
@@ -93,3 +95,13 @@ class Segmentation:
 
     def __len__(self) -> int:
         return len(self.stack)
+
+    def field_at(self, index: int) -> SectionField:
+        """Return the field of slice `index`, decoding no more of its picture than the field needs."""
+        decode = self.stack.luminance if self.luminance_alone else self.stack.decode
+        return self.field_of(index, decode(index))
+
+    def field_beside(self, index: int, picture: Picture) -> SectionField:
+        """Return the same field, to the bit, where the slice's whole `picture` has been decoded anyway."""
+        whole = not self.luminance_alone or self.stack.luminance is self.stack.decode
+        return self.field_of(index, picture) if whole else self.field_at(index)

@@ -64,7 +64,8 @@ class SliceStack:
     """
 
     decode: Callable[[int], Picture]
-    """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads."""
+    """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads. It may
+    have an attribute ``luminance``, see there."""
     names: tuple[str, ...]
     """(m) file name or slice label, for messages."""
     shape: tuple[int, int]
@@ -97,6 +98,16 @@ class SliceStack:
 
     def __len__(self) -> int:
         return len(self.names)
+
+    @property
+    def luminance(self) -> Callable[[int], Picture]:
+        """As `decode`, for those who look at luminance alone.
+
+        It may give grey levels where the file holds these beside its colours, which saves time and memory.
+        Being the decoder's own, it goes when another decoder takes its place.
+        """
+        own: Callable[[int], Picture] = getattr(self.decode, "luminance", self.decode)
+        return own
 
     def placed(self, index: int, points: FloatArray) -> FloatArray:
         """Return points of slice `index` where they lie in the stack's plane coordinates.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -55,7 +55,7 @@ def blaming(loaded: Loaded | None, call: Callable[..., Any], *arguments: Any, do
 def _answerable(loaded: Loaded, product: Any) -> Any:
     """Return `product` with its slices' decoding, or their fields, laid to the plug-in's charge."""
     if isinstance(product, SliceStack) and not _answered(product.decode):
-        return replace(product, decode=partial(_decoded, loaded, product.decode, product.shape))
+        return replace(product, decode=_Answerable(loaded, product.decode, product.shape))
     if isinstance(product, Segmentation) and not _answered(product.field_of):
         field_of = partial(_field_found, loaded, product.field_of)
         read = loaded.listing.family == "reader"  # a segmenter does not answer for a stack from memory
@@ -65,15 +65,33 @@ def _answerable(loaded: Loaded, product: Any) -> Any:
 
 
 def _answered(call: Callable[..., Any]) -> bool:
-    return isinstance(call, partial) and call.func in {_decoded, _field_found}
+    return isinstance(call, _Answerable) or (isinstance(call, partial) and call.func is _field_found)
 
 
-def _decoded(loaded: Loaded, decode: Callable[[int], Any], shape: tuple[int, int], index: int) -> Any:
-    picture = blaming(loaded, decode, index, doing="decode")
-    if not isinstance(picture, np.ndarray) or picture.shape[:2] != tuple(shape):
-        found = f"{type(picture).__name__} {getattr(picture, 'shape', '')}".strip()
-        raise failure(loaded, TypeError(f"slice {index + 1} came as {found}, announced was {tuple(shape)}"))
-    return picture
+@dataclass(frozen=True, slots=True)
+class _Answerable:
+    """A `decode` whose failures are its plug-in's."""
+
+    loaded: Loaded
+    decode: Callable[[int], Any]
+    shape: tuple[int, int]
+
+    def __call__(self, index: int) -> Any:
+        return self._checked(self.decode, index)
+
+    @property
+    def luminance(self) -> Callable[[int], Any]:
+        """The decoder's own, answered for as well."""
+        own = getattr(self.decode, "luminance", None)
+        return self if own is None else partial(self._checked, own)
+
+    def _checked(self, decode: Callable[[int], Any], index: int) -> Any:
+        picture = blaming(self.loaded, decode, index, doing="decode")
+        if not isinstance(picture, np.ndarray) or picture.shape[:2] != tuple(self.shape):
+            found = f"{type(picture).__name__} {getattr(picture, 'shape', '')}".strip()
+            wrong = TypeError(f"slice {index + 1} came as {found}, announced was {tuple(self.shape)}")
+            raise failure(self.loaded, wrong)
+        return picture
 
 
 def _field_found(loaded: Loaded, field_of: Callable[..., Any], index: int, picture: Any) -> Any:

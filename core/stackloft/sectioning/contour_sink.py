@@ -180,11 +180,13 @@ def decoded_ahead(
     Two threads work ahead (`worked_ahead`), less far where pictures are large. Where nobody looks at the
     `pictures`, an empty one is given and nothing of them stays in memory.
     """
+    nothing = np.zeros((0, 0), np.uint8)
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
+        if not pictures:
+            return index, nothing, segmentation.field_at(index)
         picture = segmentation.stack.decode(index)
-        section = segmentation.field_of(index, picture)
-        return index, picture if pictures else np.zeros((0, 0), picture.dtype), section
+        return index, picture, segmentation.field_beside(index, picture)
 
     rows, columns = segmentation.stack.shape
     yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else THREADS)

@@ -40,7 +40,7 @@ from stackloft_plugins.readers.scale_choice import ScaledSlices, profiles, requi
 from stackloft_plugins.readers.scale_said import ScaleFlags, scale_said
 from stackloft_plugins.readers.section_spacing import SpacingOptions, first_position, positions_of
 from stackloft_plugins.readers.skipped_slices import without_skipped
-from stackloft_plugins.readers.slice_decoder import decoder, hiding
+from stackloft_plugins.readers.slice_decoder import SliceDecoder
 from stackloft_plugins.readers.slice_faces import placed_when_turned, turned_over, without_doubles
 from stackloft_plugins.readers.slice_thickness import height_notice, own_thickness
 from stackloft_plugins.readers.what_is_shown import (
@@ -181,12 +181,12 @@ class PhotosReader:
         paper = 0 if said.background == "dark" else 255
         scale, found = scale_of(slices, said, paper)
         over = tuple(turned_over(number, shown) for number in kept)
-        decode = decoder(headers, found, paper, over)
+        decode = SliceDecoder(headers, tuple(() if one is None else (one,) for one in found), paper, over)
         marks = self._marks(said, decode, tuple(header.path.name for header in headers), scale.spacing)
         thickness = own_thickness(self._spacing, said, shown, places, folder, kept)
         beyond = z[0] - folder_first if thickness is None else thickness[0]
         return SliceStack(
-            decode=decode if marks is None else hiding(decode, marks.found),
+            decode=decode if marks is None else decode.hiding(marks.found),
             names=tuple(header.path.name for header in headers),
             shape=headers[0].size,
             positions=z,

@@ -27,6 +27,9 @@ MIN_SIDE = 3
 _PILLOW_LIMIT = 80_000_000  # below the size at which Pillow itself warns
 
 
+_AT_ONCE = 500_000
+"""Pixels taken over at once, few enough to stay in the processor's cache."""
+
 _DAMAGE = (OSError, SyntaxError, ValueError, TypeError, IndexError, KeyError, EOFError, MemoryError)
 """What Pillow raises on damaged files."""
 
@@ -95,12 +98,15 @@ def read_header(path: Path) -> PictureHeader:
     return PictureHeader(path, size, orientation, tags, bool(caught) or rows * columns > _PILLOW_LIMIT)
 
 
-def decode_picture(header: PictureHeader, paper: int = 255) -> NDArray[Any]:
-    """Return the upright pixels: (rows, columns) grey or (rows, columns, 3) RGB.
+def decode_picture(header: PictureHeader, paper: int = 255, *, luminance: bool = False) -> NDArray[Any]:
+    """Return the upright pixels, in an array of their own: (rows, columns) grey or (rows, columns, 3) RGB.
 
     8-bit grey and colour come as uint8, 16-bit grey as uint16, 32-bit grey as int32 or float32.
     Palettes become RGB, CMYK and other colour models are converted to RGB, and what is transparent is
     laid on a paper of grey level `paper`. Safe to call from several threads.
+
+    With `luminance`, a colour JPEG gives the luminance (ITU-R BT.601) that is stored beside its colours
+    (JFIF), which takes less than half the time and a third of the memory.
 
     Raises
     ------
@@ -109,6 +115,8 @@ def decode_picture(header: PictureHeader, paper: int = 255) -> NDArray[Any]:
     """
     with _delicately() if header.delicate else nullcontext(), _opened(header.path) as image:
         try:
+            if luminance:
+                image.draft("L", None)  # of other formats than JPEG nothing
             image.load()
             pixels = _pixels(image, paper)
         except _DAMAGE as error:
@@ -181,9 +189,20 @@ def _pixels(image: Image.Image, paper: int) -> NDArray[Any]:
         return deep.astype(deep.dtype.newbyteorder("="))
     if image.has_transparency_data:
         return _composited(image, paper)
-    if image.mode in {"L", "RGB"}:
-        return np.asarray(image)
-    return np.asarray(image.convert("L" if image.mode == "1" else "RGB"))
+    return _unpacked(
+        image if image.mode in {"L", "RGB"} else image.convert("L" if image.mode == "1" else "RGB")
+    )
+
+
+def _unpacked(image: Image.Image) -> NDArray[np.uint8]:
+    """Return the pixels of an 8-bit picture, taken over row by row: Pillow's own way copies them thrice."""
+    columns, rows = image.size
+    pixels = np.empty((rows, columns, 3) if image.mode == "RGB" else (rows, columns), np.uint8)
+    step = max(1, _AT_ONCE // columns)
+    for top in range(0, rows, step):
+        bottom = min(top + step, rows)
+        pixels[top:bottom] = np.asarray(image.crop((0, top, columns, bottom)))
+    return pixels
 
 
 def _composited(image: Image.Image, paper: int) -> NDArray[Any]:

@@ -60,16 +60,13 @@ def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missin
     return Missing(f"no {kind.value} in any corner that stands apart from the body")
 
 
-def hide(picture: NDArray[Any], found: Found) -> NDArray[Any]:
-    """Return the picture with plate where the reference object lay: the median colour around it."""
+def hide(picture: NDArray[Any], found: Found) -> None:
+    """Put plate where the reference object lies in the picture: the median colour around it."""
     row, column = found.corner
     height, width = found.hidden.shape
-    window = np.s_[row : row + height, column : column + width]
+    part = picture[row : row + height, column : column + width]
     ring = cv2.dilate(found.hidden.astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
-    beside = picture[window][ring & ~found.hidden]
-    changed = picture.copy()
-    changed[window][found.hidden] = np.median(beside, axis=0).astype(picture.dtype)
-    return changed
+    part[found.hidden] = np.median(part[ring & ~found.hidden], axis=0).astype(picture.dtype)
 
 
 def _outermost(sightings: list[tuple[float, Found]]) -> Found:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture
@@ -10,43 +10,39 @@ from stackloft_plugins.readers.reference_sighting import Found
 from stackloft_plugins.readers.slice_faces import turned_back
 
 
-def decoder(
-    headers: tuple[PictureHeader, ...],
-    found: tuple[Found | None, ...],
-    paper: int,
-    over: tuple[str | None, ...],
-) -> Callable[[int], Picture]:
-    """Return what gives the picture of a slice by its number, from 0.
+@dataclass(frozen=True, slots=True)
+class SliceDecoder:
+    """Gives the picture of a slice by its number, from 0."""
 
-    Parameters
-    ----------
-    headers, found, over
-        For each slice: its file, the reference object to hide, and how it was turned over.
-    paper : int
-        Grey level behind what is transparent.
-    """
-    if any(found):
+    headers: tuple[PictureHeader, ...]
+    """Of each slice's file."""
+    hidden: tuple[tuple[Found, ...], ...]
+    """Of each slice: what plate is put over."""
+    paper: int
+    """Grey level behind what is transparent."""
+    over: tuple[str | None, ...]
+    """How each slice was turned over."""
+    marks: tuple[tuple[Found, ...], ...] = ()
+    """Likewise, of each slice when it has been turned back; empty: nothing."""
+
+    def __call__(self, number: int) -> Picture:
+        """Return the picture with its colours."""
+        return self._seen(number, decode_picture(self.headers[number], self.paper))
+
+    def luminance(self, number: int) -> Picture:
+        """Return its luminance alone where that is quicker."""
+        return self._seen(number, decode_picture(self.headers[number], self.paper, luminance=True))
+
+    def hiding(self, more: tuple[tuple[Found, ...], ...]) -> SliceDecoder:
+        """Return the same with plate over more of each slice, marks seen on the slices as they are given."""
+        return replace(self, marks=more)  # the marks of slices that are turned over lie where they are seen
+
+    def _seen(self, number: int, picture: Picture) -> Picture:
         from stackloft_plugins.readers.reference_find import hide  # noqa: PLC0415 - needs OpenCV
 
-    def decode(number: int) -> Picture:
-        picture = decode_picture(headers[number], paper)
-        reference = found[number]
-        seen = picture if reference is None else hide(picture, reference)
-        return turned_back(seen, over[number])
-
-    return decode
-
-
-def hiding(
-    decode: Callable[[int], Picture], found: tuple[tuple[Found, ...], ...]
-) -> Callable[[int], Picture]:
-    """Return the same pictures with plate where the fiducial marks lie."""
-    from stackloft_plugins.readers.reference_find import hide  # noqa: PLC0415 - needs OpenCV
-
-    def without_marks(number: int) -> Picture:
-        picture = decode(number)
-        for mark in found[number]:
-            picture = hide(picture, mark)
-        return picture
-
-    return without_marks
+        for found in self.hidden[number]:
+            hide(picture, found)
+        seen = turned_back(picture, self.over[number])
+        for mark in self.marks[number] if self.marks else ():
+            hide(seen, mark)
+        return seen

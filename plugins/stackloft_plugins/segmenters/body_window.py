@@ -80,15 +80,13 @@ def body_window(mask: Mask, step: int, shape: tuple[int, int]) -> tuple[slice, s
     shape : tuple of int
         (rows, columns) of the whole slice.
     """
-    count, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=4)
-    if count < 2:
+    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
+    if not outlines:
         return None
-    objects = stats[1:]
-    areas = objects[:, cv2.CC_STAT_AREA]
-    large = objects[areas >= _DEBRIS * areas.max()]
-    top, left = large[:, cv2.CC_STAT_TOP], large[:, cv2.CC_STAT_LEFT]
-    bottom = (top + large[:, cv2.CC_STAT_HEIGHT]).max()
-    right = (left + large[:, cv2.CC_STAT_WIDTH]).max()
+    boxes = np.array([cv2.boundingRect(outline) for outline in outlines])
+    sizes = np.array([cv2.contourArea(outline) for outline in outlines])
+    left, top, width, height = boxes[sizes >= _DEBRIS * sizes.max()].T
+    bottom, right = (top + height).max(), (left + width).max()
     margin = MARGIN + step
     rows = slice(max(0, int(top.min()) * step - margin), min(shape[0], int(bottom) * step + margin))
     columns = slice(max(0, int(left.min()) * step - margin), min(shape[1], int(right) * step + margin))

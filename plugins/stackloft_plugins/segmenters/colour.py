@@ -34,7 +34,7 @@ from stackloft_plugins.segmenters.glare import glare_notice, without_glare
 from stackloft_plugins.segmenters.grey import Grey, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge, inside_band, outside_band
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
-from stackloft_plugins.segmenters.local_level import local_levels
+from stackloft_plugins.segmenters.local_level import on_one_level
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 _FRAME = 0.02  # of the shorter side
@@ -131,17 +131,16 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
     if grey is None or edge is None or _is_lost(grey, edge):
         raise _no_body(name, "no boundary between two colours")
     settled = edge_level(grey, edge)
-    local = local_levels(grey, edge, settled)
+    grey, edge = on_one_level(grey, edge, settled)
     notices: tuple[Notice, ...] = ()
     if float(plate.sum()) > float(np.median(colours[edge.mask > 0], axis=0).sum()):  # a light plate
-        grey, share = without_glare(grey, settled if local is None else local, edge)
+        grey, share = without_glare(grey, settled, edge)
         notices = glare_notice(share, name)
     return SectionField(
         values=read_only(grey.astype(np.float64)),
         level=settled,
         offset=(window[0].start, window[1].start),
         threshold=settled,
-        local_levels=local,
         notices=notices,
     )
 

@@ -70,9 +70,9 @@ def _mean_profile(grey: Grey, edge: Edge, distance: FloatArray) -> FloatArray | 
     seen, inside = seen_across(grey, points, normals, distance)
     if inside.sum() < 0.5 * len(points):
         return None
-    ordered = np.sort(seen, axis=0)
-    quarter = len(ordered) // 4
-    return np.asarray(ordered[quarter : len(ordered) - quarter].mean(axis=0, dtype=np.float64))
+    ordered = np.sort(np.ascontiguousarray(seen.T), axis=1)
+    quarter = ordered.shape[1] // 4
+    return np.asarray(ordered[:, quarter : ordered.shape[1] - quarter].mean(axis=1, dtype=np.float64))
 
 
 def seen_across(

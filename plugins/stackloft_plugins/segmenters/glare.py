@@ -17,9 +17,9 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.arrays import IntArray
 from stackloft.model.notices import Notice
-from stackloft_plugins.segmenters.body_window import Mask, main_body
+from stackloft_plugins.segmenters.body_window import Mask
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge
 
@@ -41,17 +41,17 @@ _SOFT = 0.7
 """Pixels: standard deviation of the edge that is put across a mouth."""
 
 
-def without_glare(grey: Grey, level: float | FloatArray, edge: Edge) -> tuple[Grey, float]:
+def without_glare(grey: Grey, level: float, edge: Edge) -> tuple[Grey, float]:
     """Return the grey levels with the bays that reflections cut into the body filled, and their share of it.
 
     Parameters
     ----------
     grey : ndarray, (rows, columns)
         Body above background, on a light plate: lighter pixels are lower.
-    level : float or ndarray
+    level : float
         Of the boundary.
     edge : Edge
-        What the bands beside the boundary say.
+        What the bands beside the boundary say, and the body within it.
 
     Examples
     --------
@@ -63,8 +63,7 @@ def without_glare(grey: Grey, level: float | FloatArray, edge: Edge) -> tuple[Gr
     >>> int((filled > -150).sum()), int((grey > -150).sum()), round(share, 3)
     (1600, 1570, 0.019)
     """
-    step = edge.contrast
-    mask = edge.mask if isinstance(level, float) else main_body((grey > level).astype(np.uint8))
+    step, mask = edge.contrast, edge.mask
     outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     if not outlines or step <= 0.0:
         return grey, 0.0
@@ -96,7 +95,7 @@ def glare_notice(share: float, name: str) -> tuple[Notice, ...]:
     return (Notice("glare-filled", message),)
 
 
-def _filled(grey: Grey, level: float | FloatArray, step: float, mask: Mask, bays: Mask) -> Grey:
+def _filled(grey: Grey, level: float, step: float, mask: Mask, bays: Mask) -> Grey:
     """Return the grey levels with the body continued over the bays."""
     if not bays.any():
         return grey

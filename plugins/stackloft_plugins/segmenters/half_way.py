@@ -143,7 +143,7 @@ def inside_band(mask: Mask) -> NDArray[np.bool_]:
     """Return the pixels 1 to 2 px inside; for a body too small for that, its outermost ones."""
     for near in (_NEAR, 0):
         core = cv2.erode(mask, _disc(near), borderType=cv2.BORDER_CONSTANT, borderValue=1) if near else mask
-        if core.any():
+        if cv2.hasNonZero(core):
             deep = cv2.erode(mask, _disc(_FAR), borderType=cv2.BORDER_CONSTANT, borderValue=1)
             return _without(core, deep)
     return np.zeros(mask.shape, dtype=np.bool_)

@@ -139,7 +139,8 @@ class HistogramSegmenter:
         def field_of(number: int, picture: Picture) -> SectionField:
             return self._field(stack, number, picture, threshold)
 
-        return laid_out(Segmentation(stack, field_of), self.align)
+        alone = self.channel == "luminance"
+        return laid_out(Segmentation(stack, field_of, luminance_alone=alone), self.align)
 
     def _of_slabs(self, stack: SliceStack) -> Segmentation:
         rules = self._slab_rules()
@@ -171,7 +172,8 @@ class HistogramSegmenter:
         )
 
     def _median_threshold(self, stack: SliceStack) -> float:
-        levels = [self._field(stack, k, stack.decode(k), None).threshold for k in range(len(stack))]
+        decode = stack.luminance if self.channel == "luminance" else stack.decode
+        levels = [self._field(stack, k, decode(k), None).threshold for k in range(len(stack))]
         return float(np.median(levels))
 
     def _field(

@@ -12,11 +12,13 @@ Where the surroundings are even there is nothing to follow, and the one level st
 
 from __future__ import annotations
 
-import cv2
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import replace
 
-from stackloft.model.arrays import FloatArray
+import numpy as np
+
+from stackloft.model.arrays import IntArray
+from stackloft_plugins.segmenters.body_window import main_body
+from stackloft_plugins.segmenters.cell_means import CellMeans, cell_means
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge, inside_band, outside_band
 from stackloft_plugins.segmenters.stretch_levels import UNEVEN, stretch_levels
@@ -26,11 +28,13 @@ _SPAN = 0.2
 REACH = 8.0
 """Pixels: standard deviation of the window in which the two sides are averaged."""
 _OUTLIER = 4.0  # robust standard deviations: a reflection or a crumb in a band
+_FEWEST = 40  # usual pixels of a band
+_TRUST = 1e-3
 _FURTHEST = 0.3  # of the contrast: no local level is further from the one level
 
 
-def local_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
-    """Return the level pixel by pixel, (rows, columns); None where one level serves.
+def on_one_level(grey: Grey, edge: Edge, level: float) -> tuple[Grey, Edge]:
+    """Return grey levels whose boundary is at `level` wherever it is, and the edge in them.
 
     Parameters
     ----------
@@ -48,44 +52,46 @@ def local_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
     >>> scene[:, 60:] = 50                                       # juice on the right
     >>> scene[40:80, 40:80] = 120
     >>> edge = half_way_edge(scene, 85.0)
-    >>> found = local_levels(scene, edge, edge.level)
-    >>> [round(float(found[60, column])) for column in (40, 79)]
+    >>> even, _ = on_one_level(scene, edge, edge.level)
+    >>> [round(float(scene[60, column] - even[60, column] + edge.level)) for column in (40, 79)]
     [70, 85]
     """
+    local = local_levels(grey, edge, level)
+    if local is None:
+        return grey, edge
+    local -= np.float32(level)
+    even = np.subtract(grey, local, out=local)
+    return even, replace(edge, mask=main_body((even > level).view(np.uint8)))
+
+
+def local_levels(grey: Grey, edge: Edge, level: float) -> Grey | None:
+    """Return the level pixel by pixel, (rows, columns); None where one level serves."""
     if edge.span < _SPAN * edge.contrast:
         return None
     along = stretch_levels(grey, edge, level)
     if along is not None:
         return along
-    inner, outer = inside_band(edge.mask), outside_band(edge.mask)
-    within = _sides_mean(grey, inner & _usual(grey, inner))
-    beyond = _sides_mean(grey, outer & _usual(grey, outer))
+    bands = [np.flatnonzero(band(edge.mask)) for band in (inside_band, outside_band)]
+    within, beyond = (_side(grey, band) for band in bands)
     if within is None or beyond is None:
         return None
-    half = 0.5 * (within + beyond)
-    beside = half[inner | outer]
+    beside = 0.5 * np.concatenate([within.at(band) + beyond.at(band) for band in bands])
     if float(beside.std()) < UNEVEN * edge.contrast:
         return None
-    moved = half - float(np.median(beside))
+    half = np.float32(0.5) * (within.cells + beyond.cells) - np.float32(np.median(beside))
+    moved = CellMeans(half, within.shape).everywhere()
     furthest = _FURTHEST * edge.contrast
-    return np.asarray(level + np.clip(moved, -furthest, furthest), dtype=np.float64)
+    return np.clip(moved, -furthest, furthest, out=moved) + np.float32(level)
 
 
-def _usual(grey: Grey, band: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return where the grey level is within the band's usual spread."""
-    values = grey[band]
-    middle = float(np.median(values))
-    spread = max(1.4826 * float(np.median(np.abs(values - middle))), 1.0)
-    return np.asarray(np.abs(grey - middle) <= _OUTLIER * spread)
-
-
-def _sides_mean(grey: Grey, chosen: NDArray[np.bool_]) -> FloatArray | None:
-    """Return the chosen pixels' mean in a window about each pixel; None when hardly any is chosen."""
-    if chosen.sum() < 40:
+def _side(grey: Grey, band: IntArray) -> CellMeans | None:
+    """Return the mean of a band's usual pixels about each place; None when hardly any is there."""
+    values = grey.ravel()[band]
+    if not len(values):
         return None
-    weight = chosen.astype(np.float32)
-    near = cv2.GaussianBlur(weight, (0, 0), REACH)
-    total = cv2.GaussianBlur(np.where(chosen, grey, 0).astype(np.float32), (0, 0), REACH)
-    usual = np.float32(grey[chosen].mean())
-    trust = np.float32(1e-3)
-    return np.asarray((total + trust * usual) / (near + trust), dtype=np.float64)
+    off = np.abs(values - np.median(values))
+    usual = off <= _OUTLIER * max(1.4826 * float(np.median(off)), 1.0)
+    if np.count_nonzero(usual) < _FEWEST:
+        return None
+    shape: tuple[int, int] = grey.shape
+    return cell_means(shape, band[usual], values[usual], REACH, _TRUST)

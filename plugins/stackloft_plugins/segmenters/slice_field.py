@@ -17,10 +17,10 @@ from stackloft_plugins.segmenters.body_window import background_of, body_window,
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.flat_field import fit_light
 from stackloft_plugins.segmenters.glare import glare_notice, without_glare
-from stackloft_plugins.segmenters.grey import Grey, grey_levels, median_filtered, single
+from stackloft_plugins.segmenters.grey import Grey, filtered_grey, single
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
-from stackloft_plugins.segmenters.local_level import local_levels
+from stackloft_plugins.segmenters.local_level import on_one_level
 
 _NO_STEP = 4.0  # a boundary whose step is below this many standard deviations of noise is none
 _FAINT = 10.0
@@ -68,7 +68,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     """
     shape: tuple[int, int] = picture.shape[:2]
     step = coarse_step(shape)
-    coarse = median_filtered(grey_levels(picture[::step, ::step], rules.channel))
+    coarse = filtered_grey(picture[::step, ::step], rules.channel)
     first = _first_level(picture, coarse, rules, name)
     background = background_of(coarse, first)
     sign = 1.0 if (background.dark if rules.background is None else rules.background == "dark") else -1.0
@@ -82,23 +82,23 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     window = body_window(seen, step, shape)
     if window is None:
         raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
-    plain = median_filtered(grey_levels(picture[window], rules.channel))
+    plain = filtered_grey(picture[window], rules.channel)
     grey: Grey = sign * plain if light is None else light.flattened(plain, window, sign)
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
-    local = local_levels(grey, edge, level) if rules.settles else None
     notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
     if rules.background is None and not background.sure:
         notices.append(_unsure(name))
+    if rules.settles:
+        grey, edge = on_one_level(grey, edge, level)
     if sign < 0.0:
-        grey, share = without_glare(grey, level if local is None else local, edge)
+        grey, share = without_glare(grey, level, edge)
         notices += glare_notice(share, name)
     return SectionField(
         values=read_only(grey),
         level=single(level),
         offset=(window[0].start, window[1].start),
         threshold=sign * level,
-        local_levels=local,
         notices=tuple(notices),
     )
 
@@ -142,7 +142,7 @@ def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -
         return rules.threshold
     if rules.method == "half-way":
         return histogram_level(coarse, "otsu", name)
-    return histogram_level(median_filtered(grey_levels(picture, rules.channel)), rules.method, name)
+    return histogram_level(filtered_grey(picture, rules.channel), rules.method, name)
 
 
 def _edge(grey: Grey, first: float, rules: LevelRules, name: str) -> Edge:

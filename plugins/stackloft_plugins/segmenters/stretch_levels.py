@@ -14,14 +14,14 @@ boundary that the last one's levels give.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 
-from stackloft.geometry.edge_positions import edge_positions
+from stackloft.geometry.edge_positions import EdgeShape, edge_positions
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft_plugins.segmenters.body_window import main_body
+from stackloft_plugins.segmenters.cell_means import cell_means
 from stackloft_plugins.segmenters.edge_level import boundary_points, seen_across
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge
@@ -51,55 +51,82 @@ _FURTHEST = 0.35
 """Of the usual step: no level is further from the one level."""
 _SMOOTH = 6.0
 """Pixels: standard deviation of the window in which the levels along the outline are carried to its sides."""
+_TRUST = 1e-6
 
 
-def stretch_levels(grey: Grey, edge: Edge, level: float) -> FloatArray | None:
+def stretch_levels(grey: Grey, edge: Edge, level: float) -> Grey | None:
     """Return the level pixel by pixel, (rows, columns).
 
     Returns None when what lies beside the outline is even, when it is short, lies at the border, or has
     edges unlike the model.
     """
-    found = np.full(grey.shape, level, dtype=np.float64)
+    shape: tuple[int, int] = grey.shape
+    found = np.full(shape, level, dtype=np.float32)
+    lens: EdgeShape | None = None
     for slack in _SLACKS:
-        above = np.asarray(grey - found, dtype=np.float32)
+        above = np.subtract(grey, found)
         mask = main_body((above > 0).view(np.uint8))
-        more = _along(above, replace(edge, body=edge.contrast, background=-edge.contrast, mask=mask), slack)
+        step, more = _along(
+            above, replace(edge, body=edge.contrast, background=-edge.contrast, mask=mask), slack, lens
+        )
         if more is None:
             return None
-        points, shift, step = more
-        found += _spread(grey.shape, points, shift)
+        lens = more.lens
+        moved = cell_means(shape, _numbers(more.points, shape), more.levels, _SMOOTH, _TRUST)
+        found += moved.everywhere()
         np.clip(found, level - _FURTHEST * step, level + _FURTHEST * step, out=found)
     return found
 
 
-def _along(above: Grey, edge: Edge, slack: float) -> tuple[FloatArray, FloatArray, float] | None:
-    """Return points (x, y) where `above` is 0, what it is at the edge beside each, and the usual step."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Along:
+    """What was seen along an outline."""
+
+    points: FloatArray
+    """(n, 2) x, y where the field is 0"""
+    levels: FloatArray
+    """(n) what it is at the edge beside each"""
+    lens: EdgeShape
+
+
+def _along(above: Grey, edge: Edge, slack: float, lens: EdgeShape | None) -> tuple[float, _Along | None]:
+    """Return the usual step, and what was seen; None where there is nothing to follow."""
     points, normals = boundary_points(above, edge)
     if len(points) < _POINTS * _STRETCHES[0] // 2:
-        return None
+        return 0.0, None
     across = np.linspace(-_REACH, _REACH, _SAMPLES)
     seen, inside = seen_across(above, points, normals, across)
     points = points[inside]
     if len(points) < 0.5 * len(inside):
-        return None
+        return 0.0, None
     count = int(np.clip(len(points) // _POINTS, *_STRETCHES))
     stretches = [
         _clean(stretch, across, _OTHERWISE * edge.contrast / 2) for stretch in _stretches(seen, count)
     ]
     profiles = np.stack([_usual(stretch) for stretch in stretches])
-    found = edge_positions(profiles, _REACH, slack)
-    good = (found.misfit < _POOREST) & (profiles[:, 0] > profiles[:, -1])
-    good &= np.array([len(stretch) >= _FEWEST for stretch in stretches])
-    if good.mean() < _BELIEVED:
-        return None
-    chosen = np.flatnonzero(good)
+    seen_well = (profiles[:, 0] > profiles[:, -1]) & [len(stretch) >= _FEWEST for stretch in stretches]
+    step = _step(profiles[seen_well])
+    if seen_well.mean() < _BELIEVED or not _uneven(profiles[seen_well], across, step):
+        return step, None
+    found = edge_positions(profiles, _REACH, slack, lens)
+    chosen = np.flatnonzero(seen_well & (found.misfit < _POOREST))
+    if len(chosen) < _BELIEVED * count or not _uneven(profiles[chosen], across, _step(profiles[chosen])):
+        return step, None
     levels = np.array([np.interp(found.position[k], across, profiles[k]) for k in chosen])
     calm = np.median([np.roll(levels, 1), levels, np.roll(levels, -1)], axis=0)
     along = (np.arange(len(points)) + 0.5) / len(points)
-    step = float(np.median(profiles[chosen, 0] - profiles[chosen, -1]))
-    if float(profiles[np.ix_(chosen, across > 1.5)].std(axis=0).max()) < UNEVEN * step:
-        return None
-    return points, np.interp(along, (chosen + 0.5) / count, calm, period=1.0), step
+    beside = np.interp(along, (chosen + 0.5) / count, calm, period=1.0)
+    return _step(profiles[chosen]), _Along(points, beside, found.shape)
+
+
+def _step(profiles: FloatArray) -> float:
+    """Return the usual step from body to ground."""
+    return float(np.median(profiles[:, 0] - profiles[:, -1])) if len(profiles) else 0.0
+
+
+def _uneven(profiles: FloatArray, across: FloatArray, step: float) -> bool:
+    """Return whether what lies beside the outline changes along it."""
+    return float(profiles[:, across > 1.5].std(axis=0).max()) >= UNEVEN * step
 
 
 def _stretches(seen: Grey, count: int) -> list[Grey]:
@@ -125,18 +152,7 @@ def _usual(stretch: Grey) -> FloatArray:
     return np.asarray(ordered[quarter : len(ordered) - quarter].mean(axis=0), dtype=np.float64)
 
 
-def _spread(shape: tuple[int, ...], points: FloatArray, levels: FloatArray) -> FloatArray:
-    """Return the levels at points (x, y) of the outline carried to every pixel, (rows, columns)."""
-    column, row = _pixels(points, shape)
-    usual = float(np.median(levels))
-    weight, total = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-    np.add.at(weight, (row, column), 1.0)
-    np.add.at(total, (row, column), (levels - usual).astype(np.float32))
-    near = cv2.GaussianBlur(weight, (0, 0), _SMOOTH) + np.float32(1e-6)
-    return np.asarray(usual + cv2.GaussianBlur(total, (0, 0), _SMOOTH) / near, dtype=np.float64)
-
-
-def _pixels(points: FloatArray, shape: tuple[int, ...]) -> IntArray:
-    """Return the columns and rows of the pixels that points (x, y) lie in, (2, n)."""
-    inside = np.clip(np.round(points), 0, np.array(shape[::-1]) - 1)
-    return np.asarray(inside.T, dtype=np.int64)
+def _numbers(points: FloatArray, shape: tuple[int, int]) -> IntArray:
+    """Return the pixels, numbered row after row, that points (x, y) lie in, (n)."""
+    column, row = np.clip(np.round(points), 0, np.array(shape[::-1]) - 1).T.astype(np.int64)
+    return np.asarray(row * shape[1] + column)
