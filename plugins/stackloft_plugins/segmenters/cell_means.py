@@ -74,7 +74,7 @@ def cell_means(
     Examples
     --------
     >>> found = cell_means((40, 80), np.array([820, 860]), np.array([1.0, 3.0]), 4.0, 1e-4)
-    >>> found.at(np.array([820, 860])).round(2).tolist(), found.everywhere().shape
+    >>> [round(float(mean), 1) for mean in found.at(np.array([820, 860]))], found.everywhere().shape
     ([1.0, 3.0], (40, 80))
     """
     rows, columns = (-(-side // CELL) for side in shape)
