@@ -29,7 +29,7 @@ TOGETHER = 8
 HELD = 4_000_000
 """Bytes: slices whose fields take more are traced without waiting for others."""
 LARGE = 4_000_000
-"""Pixels: of larger pictures no more are worked on than there are threads."""
+"""Pixels: of larger pictures no more are held than there are threads."""
 _NAMED = 3  # slices named in a notice that stands for several
 
 
@@ -189,7 +189,7 @@ def decoded_ahead(
         return index, picture, segmentation.field_beside(index, picture)
 
     rows, columns = segmentation.stack.shape
-    yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else THREADS)
+    yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else 1)
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:

@@ -94,10 +94,10 @@ def body_window(mask: Mask, step: int, shape: tuple[int, int]) -> tuple[slice, s
 
 
 def main_body(mask: Mask) -> Mask:
-    """Return the object with the largest outline, its holes filled; all 0 when there is none."""
+    """Leave in `mask` only the object with the largest outline, its holes filled, and return it."""
     outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    filled = np.zeros_like(mask)
+    mask.fill(0)
     if outlines:
         largest = max(outlines, key=cv2.contourArea)
-        cv2.drawContours(filled, [largest], -1, 1, thickness=cv2.FILLED)
-    return filled
+        cv2.drawContours(mask, [largest], -1, 1, thickness=cv2.FILLED)
+    return mask

@@ -204,10 +204,11 @@ def _along(colours: Grey, mask: Mask) -> tuple[Grey | None, float]:
     Lengths of the way are those of RGB from 0 to 255. Reflections and crumbs may lie beyond either end.
     """
     inner, outer = inside_band(mask), outside_band(mask)
-    if not inner.any() or not outer.any():
+    if not len(inner) or not len(outer):
         return None, 0.0
-    beside = np.median(colours[outer], axis=0)
-    way = np.median(colours[inner], axis=0) - beside
+    pixels = colours.reshape(-1, 3)
+    beside = np.median(pixels[outer], axis=0)
+    way = np.median(pixels[inner], axis=0) - beside
     length = float(np.linalg.norm(way))
     if length == 0.0:
         return None, 0.0

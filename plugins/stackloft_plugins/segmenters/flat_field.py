@@ -43,7 +43,7 @@ class Light:
     shape: tuple[int, int]
     """(rows, columns) of the whole picture."""
 
-    def flattened(self, grey: Grey, window: tuple[slice, slice], sign: float = 1.0) -> Grey:
+    def flattened(self, grey: NDArray[Any], window: tuple[slice, slice], sign: float = 1.0) -> Grey:
         """Return `sign` times the grey levels of a window of the picture, as under even light."""
         rows = np.arange(self.shape[0])[window[0]]
         columns = np.arange(self.shape[1])[window[1]]
@@ -51,7 +51,7 @@ class Light:
         for top in range(0, len(rows), _AT_ONCE):
             some = slice(top, top + _AT_ONCE)
             light = self.at(rows[some], columns, np.float32)
-            cv2.divide(np.ascontiguousarray(grey[some]), light, flat[some], scale=sign)
+            cv2.divide(np.ascontiguousarray(grey[some]), light, flat[some], scale=sign, dtype=cv2.CV_32F)
         return flat
 
     def at(

@@ -69,20 +69,18 @@ def single(level: float) -> float:
     return float(np.float32(level))
 
 
-def filtered_grey(picture: NDArray[Any], channel: str = "luminance") -> Grey:
-    """Return the `median_filtered` grey levels of a picture.
-
-    Of 8-bit grey the median comes first, which takes a third of the time and gives the same.
+def filtered(picture: NDArray[Any], channel: str = "luminance") -> NDArray[Any]:
+    """Return the `median_filtered` grey levels of a picture; 8-bit grey stays 8-bit, a quarter of the memory.
 
     Examples
     --------
     >>> speck = np.zeros((5, 5), dtype=np.uint8)
     >>> speck[2, 2] = 255
-    >>> float(filtered_grey(speck).max())
-    0.0
+    >>> filtered(speck).dtype, int(filtered(speck).max())
+    (dtype('uint8'), 0)
     """
     if picture.ndim == 2 and picture.dtype == np.uint8:
-        return grey_levels(cv2.medianBlur(np.ascontiguousarray(picture), 3))
+        return np.asarray(cv2.medianBlur(np.ascontiguousarray(picture), 3))
     return median_filtered(grey_levels(picture, channel))
 
 

@@ -71,7 +71,7 @@ def local_levels(grey: Grey, edge: Edge, level: float) -> Grey | None:
     along = stretch_levels(grey, edge, level)
     if along is not None:
         return along
-    bands = [np.flatnonzero(band(edge.mask)) for band in (inside_band, outside_band)]
+    bands = inside_band(edge.mask), outside_band(edge.mask)
     within, beyond = (_side(grey, band) for band in bands)
     if within is None or beyond is None:
         return None

@@ -15,9 +15,9 @@ from stackloft.model.segmentation import SectionField
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.segmenters.body_window import background_of, body_window, coarse_step
 from stackloft_plugins.segmenters.edge_level import edge_level
-from stackloft_plugins.segmenters.flat_field import fit_light
+from stackloft_plugins.segmenters.flat_field import Light, fit_light
 from stackloft_plugins.segmenters.glare import glare_notice, without_glare
-from stackloft_plugins.segmenters.grey import Grey, filtered_grey, single
+from stackloft_plugins.segmenters.grey import Grey, filtered, grey_levels, single
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import on_one_level
@@ -68,7 +68,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     """
     shape: tuple[int, int] = picture.shape[:2]
     step = coarse_step(shape)
-    coarse = filtered_grey(picture[::step, ::step], rules.channel)
+    coarse = grey_levels(filtered(picture[::step, ::step], rules.channel))
     first = _first_level(picture, coarse, rules, name)
     background = background_of(coarse, first)
     sign = 1.0 if (background.dark if rules.background is None else rules.background == "dark") else -1.0
@@ -82,8 +82,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     window = body_window(seen, step, shape)
     if window is None:
         raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
-    plain = filtered_grey(picture[window], rules.channel)
-    grey: Grey = sign * plain if light is None else light.flattened(plain, window, sign)
+    grey = _levels(picture[window], rules.channel, sign, light, window)
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
     notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
@@ -137,12 +136,23 @@ def mask_field(path: Path, shape: tuple[int, int], name: str, turned: str | None
     return SectionField(read_only(mask.astype(np.float64)), level, threshold=level)
 
 
+def _levels(
+    part: Picture, channel: str, sign: float, light: Light | None, window: tuple[slice, slice]
+) -> Grey:
+    """Return the window's grey levels with the body above, as under even light."""
+    plain = filtered(part, channel)
+    if light is not None:
+        return light.flattened(plain, window, sign)
+    grey = grey_levels(plain)
+    return grey if sign > 0.0 else np.negative(grey, out=grey)
+
+
 def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -> float:
     if rules.threshold is not None:
         return rules.threshold
     if rules.method == "half-way":
         return histogram_level(coarse, "otsu", name)
-    return histogram_level(filtered_grey(picture, rules.channel), rules.method, name)
+    return histogram_level(grey_levels(filtered(picture, rules.channel)), rules.method, name)
 
 
 def _edge(grey: Grey, first: float, rules: LevelRules, name: str) -> Edge:

@@ -61,20 +61,19 @@ def stretch_levels(grey: Grey, edge: Edge, level: float) -> Grey | None:
     edges unlike the model.
     """
     shape: tuple[int, int] = grey.shape
-    found = np.full(shape, level, dtype=np.float32)
+    found: Grey | None = None
     lens: EdgeShape | None = None
     for slack in _SLACKS:
-        above = np.subtract(grey, found)
-        mask = main_body((above > 0).view(np.uint8))
-        step, more = _along(
-            above, replace(edge, body=edge.contrast, background=-edge.contrast, mask=mask), slack, lens
-        )
+        even, at = (grey, level) if found is None else (np.subtract(grey, found), 0.0)
+        mask = main_body((even > at).view(np.uint8))
+        about = replace(edge, body=at + edge.contrast, background=at - edge.contrast, mask=mask)
+        step, more = _along(even, about, slack, lens)
         if more is None:
             return None
         lens = more.lens
-        moved = cell_means(shape, _numbers(more.points, shape), more.levels, _SMOOTH, _TRUST)
-        found += moved.everywhere()
-        np.clip(found, level - _FURTHEST * step, level + _FURTHEST * step, out=found)
+        moved = cell_means(shape, _numbers(more.points, shape), more.levels, _SMOOTH, _TRUST).everywhere()
+        moved += np.float32(level) if found is None else found
+        found = np.clip(moved, level - _FURTHEST * step, level + _FURTHEST * step, out=moved)
     return found
 
 
@@ -83,19 +82,20 @@ class _Along:
     """What was seen along an outline."""
 
     points: FloatArray
-    """(n, 2) x, y where the field is 0"""
+    """(n, 2) x, y on the boundary at the level"""
     levels: FloatArray
-    """(n) what it is at the edge beside each"""
+    """(n) grey level above it at the edge beside each"""
     lens: EdgeShape
 
 
-def _along(above: Grey, edge: Edge, slack: float, lens: EdgeShape | None) -> tuple[float, _Along | None]:
+def _along(grey: Grey, edge: Edge, slack: float, lens: EdgeShape | None) -> tuple[float, _Along | None]:
     """Return the usual step, and what was seen; None where there is nothing to follow."""
-    points, normals = boundary_points(above, edge)
+    points, normals = boundary_points(grey, edge)
     if len(points) < _POINTS * _STRETCHES[0] // 2:
         return 0.0, None
     across = np.linspace(-_REACH, _REACH, _SAMPLES)
-    seen, inside = seen_across(above, points, normals, across)
+    seen, inside = seen_across(grey, points, normals, across)
+    seen -= np.float32(edge.level)
     points = points[inside]
     if len(points) < 0.5 * len(inside):
         return 0.0, None
