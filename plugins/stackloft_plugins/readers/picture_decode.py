@@ -113,24 +113,58 @@ def decode_picture(header: PictureHeader, paper: int = 255, *, luminance: bool =
     InputError
         The picture is truncated or damaged, or has changed since its header was read.
     """
+    pixels = _decoded(header, paper, (lambda image: image.draft("L", None)) if luminance else None)
+    _check_size(header, pixels, header.size)
+    return pixels
+
+
+def decode_smaller(header: PictureHeader, paper: int, longest: int) -> tuple[NDArray[Any], int]:
+    """Return the pixels of a copy half, a quarter or an eighth as large, and by how much it is smaller.
+
+    JPEG is decoded so in the first place (fewer frequencies of its cosine transforms are used), in a fraction
+    of the time; other formats come whole. A copy's pixel covers 2², 4² or 8² of the picture's.
+
+    Parameters
+    ----------
+    header, paper
+        As for `decode_picture`, errors likewise.
+    longest : int
+        The copy's longer side has at least so many pixels, unless the picture has fewer.
+    """
+    factor = next((f for f in (8, 4, 2) if max(header.size) >= f * longest), 1)
+
+    def reduce(image: Image.Image) -> None:
+        image.draft(image.mode, (image.size[0] // factor, image.size[1] // factor))
+
+    pixels = _decoded(header, paper, reduce if factor > 1 else None)
+    if pixels.shape[:2] == header.size:
+        return pixels, 1
+    _check_size(header, pixels, (-(-header.size[0] // factor), -(-header.size[1] // factor)))
+    return pixels, factor
+
+
+def _decoded(
+    header: PictureHeader, paper: int, prepare: Callable[[Image.Image], object] | None
+) -> NDArray[Any]:
     with _delicately() if header.delicate else nullcontext(), _opened(header.path) as image:
         try:
-            if luminance:
-                image.draft("L", None)  # of other formats than JPEG nothing
+            if prepare is not None:
+                prepare(image)  # does something to JPEG alone
             image.load()
             pixels = _pixels(image, paper)
         except _DAMAGE as error:
             raise _damaged(header.path, error) from error
-    if header.orientation != 1:
-        pixels = np.ascontiguousarray(_UPRIGHT[header.orientation](pixels))
-    if pixels.shape[:2] != header.size:
+    return np.ascontiguousarray(_UPRIGHT[header.orientation](pixels)) if header.orientation != 1 else pixels
+
+
+def _check_size(header: PictureHeader, pixels: NDArray[Any], size: tuple[int, int]) -> None:
+    if pixels.shape[:2] != size:
         raise InputError(
             "picture changed while it was read",
             where=str(header.path),
             found=f"{pixels.shape[1]} × {pixels.shape[0]} pixels",
-            expected=f"{header.size[1]} × {header.size[0]}",
+            expected=f"{size[1]} × {size[0]}",
         )
-    return pixels
 
 
 @contextmanager

@@ -186,6 +186,6 @@ def _of_reference(found: Sequence[Found | None], pixels: FloatArray) -> ScaleUnc
     scatter = np.array([0.0 if one is None else one.size.uncertainty / one.size.size for one in found])
     seen = ~np.isnan(pixels)
     shared = float(np.sqrt((scatter[seen] ** 2).mean() / seen.sum())) if not seen.all() else 0.0
-    edge = 2 * EDGE_PLACE / float(np.nanmedian(pixels))
+    edge = float(np.median([2 * EDGE_PLACE * one.size.grain / one.size.size for one in found if one]))
     source = f"edge of the reference object, {np.nanmedian(pixels):.0f} pixels across"
     return ScaleUncertainty(float(np.hypot(edge, shared)), frozen_floats(scatter), source)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -23,6 +25,7 @@ _SMALL = 900  # pixels on the longer side of the copy in which objects are looke
 _MARGIN = 0.10  # of its size, hidden around it: its shadow
 _MISSHAPEN = 0.012  # of its size
 _OBLIQUE = 0.06
+_ENOUGH = 5000  # pixels for a median colour
 _SAME_PLACE = 0.06  # of the picture's sides
 
 
@@ -42,19 +45,21 @@ def find_reference(picture: NDArray[Any], kind: ReferenceKind) -> Found | Missin
     size = (round(columns / step), round(rows / step))
     small = cv2.resize(resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
     contrast = contrast_with_plate(small)
-    sightings: list[tuple[float, Found]] = []
+    sightings: list[_Sighting] = []
     cut_off = False
     for level in LEVELS:
         shapes = shapes_at(contrast, level)
         cut_off |= _cut_in_a_corner(shapes)
         shape = reference_among(shapes, kind)
-        measured = None if shape is None else _measured(picture, shape, kind, step)
-        if shape is not None and measured is not None:
+        if shape is None or any(_same(shape, seen.shape) for seen in sightings):
+            continue
+        measured = _measured(picture, shape, kind, step)
+        if measured is not None:
             others = [other for other in shapes if other is not shape]
-            found = object_found(measured, shape, others, step, (rows, columns))
-            sightings.append((shape.to_corner, found))
+            sightings.append(_Sighting(measured, shape, others))
     if sightings:
-        return _outermost(sightings)
+        seen = _outermost(sightings)
+        return object_found(seen.size, seen.shape, seen.others, step, (rows, columns))
     if cut_off:
         return Missing("an object in a corner is cut off by the picture's border", cut_off=True)
     return Missing(f"no {kind.value} in any corner that stands apart from the body")
@@ -65,15 +70,33 @@ def hide(picture: NDArray[Any], found: Found) -> None:
     row, column = found.corner
     height, width = found.hidden.shape
     part = picture[row : row + height, column : column + width]
-    ring = cv2.dilate(found.hidden.astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
-    part[found.hidden] = np.median(part[ring & ~found.hidden], axis=0).astype(picture.dtype)
+    hidden = found.hidden.view(np.uint8)
+    ring = np.flatnonzero((cv2.dilate(hidden, np.ones((9, 9), np.uint8)) > hidden).view(np.bool_))
+    some = np.unravel_index(ring[:: 1 + len(ring) // _ENOUGH], found.hidden.shape)
+    plate = np.median(part[some], axis=0).astype(picture.dtype)
+    np.copyto(part, plate, where=found.hidden if picture.ndim == 2 else found.hidden[..., None])
 
 
-def _outermost(sightings: list[tuple[float, Found]]) -> Found:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sighting:
+    """What was measured at one threshold."""
+
+    size: PixelSize
+    shape: Shape
+    others: list[Shape]
+
+
+def _same(shape: Shape, seen: Shape) -> bool:
+    """Tell whether two thresholds show the same outline, to a pixel of the small copy."""
+    moved = np.hypot(shape.centre[0] - seen.centre[0], shape.centre[1] - seen.centre[1])
+    return bool(moved < 1.0) and abs(shape.area - seen.area) < 0.5 * (len(shape.outline) + 4)
+
+
+def _outermost(sightings: list[_Sighting]) -> _Sighting:
     """Return the largest of what was seen nearest to a corner: a coin's rim, not the ring stamped within."""
-    nearest = min(to_corner for to_corner, _ in sightings)
-    same = [found for to_corner, found in sightings if to_corner <= nearest + _SAME_PLACE]
-    return max(same, key=lambda found: found.size.size)
+    nearest = min(seen.shape.to_corner for seen in sightings)
+    same = [seen for seen in sightings if seen.shape.to_corner <= nearest + _SAME_PLACE]
+    return max(same, key=lambda seen: seen.size.size)
 
 
 def resizable(picture: NDArray[Any]) -> NDArray[Any]:
@@ -116,8 +139,13 @@ def grey_window(
     inside = np.zeros(part.shape[:2], np.uint8)
     outline = (shape.outline.astype(np.float64) + 0.5) * step - 0.5 - [left, top]
     cv2.drawContours(inside, [np.round(outline).astype(np.int32)], -1, 1, cv2.FILLED)
-    off = np.median(part[inside > 0], axis=0) - np.median(part[inside == 0], axis=0)
-    grey: NDArray[np.float32] = np.ascontiguousarray(part @ (off / np.abs(off).sum()), dtype=np.float32)
+    pixels = part.reshape(-1, part.shape[2])
+    own, beside = (
+        np.median(pixels[where[:: 1 + len(where) // _ENOUGH]], axis=0)
+        for where in (np.flatnonzero(inside), np.flatnonzero(inside == 0))
+    )
+    off = own - beside
+    grey: NDArray[np.float32] = np.asarray(cv2.transform(part, (off / np.abs(off).sum())[None]), np.float32)
     return grey, (left, top)
 
 
@@ -141,8 +169,13 @@ def object_found(
 def _drawn(
     shape: Shape, step: float, corner: tuple[int, int], window: tuple[int, int], margin: float
 ) -> NDArray[np.bool_]:
-    mask = np.zeros(window, np.uint8)
-    outline = np.round((shape.outline.astype(np.float64) + 0.5) * step - 0.5 - corner).astype(np.int32)
-    cv2.drawContours(mask, [outline], -1, 1, cv2.FILLED)
+    """Return where a window of the picture lies within `margin` of the shape, as finely as the copy shows."""
+    rows, columns = (math.ceil(side / step) for side in window)
+    mask = np.ones((rows, columns), np.uint8)
+    outline = np.round(shape.outline - (np.array(corner) / step)).astype(np.int32)
+    cv2.drawContours(mask, [outline], -1, 0, cv2.FILLED)
     # by distance: dilating by a disc as wide as a coin's margin takes a second
-    return np.asarray(cv2.distanceTransform(1 - mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) <= round(margin))
+    near = cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) <= margin / step
+    row, column = (np.minimum((np.arange(side) / step).astype(int), most - 1)
+                   for side, most in zip(window, (rows, columns), strict=True))  # fmt: skip
+    return np.asarray(near[row][:, column])
