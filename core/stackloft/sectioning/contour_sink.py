@@ -13,7 +13,7 @@ from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
-from stackloft.sectioning.ahead import AHEAD, THREADS, Behind, worked_ahead
+from stackloft.sectioning.ahead import AHEAD, Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
