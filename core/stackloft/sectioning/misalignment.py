@@ -4,7 +4,7 @@ r"""Slices that do not lie on each other, as slices photographed one by one with
 
     jitter of the middles          The middles of a body's sections wander smoothly along the axis, or, where
     -----------------------        a cut passes a corner, with a kink that the widths have too. What is
-    what the body may show         neither (`geometry.convex_wander`) comes from how the slices were laid down.
+    what the body may show         neither (`geometry.convex_wander`) comes from laying the slices down.
 
 The mean over the stack decides, so that neither one displaced slice nor one hollow of the body does.
 """
