@@ -22,8 +22,8 @@ from stackloft.model.arrays import FloatArray
 from stackloft.model.notices import Notice
 
 LIMIT = 0.0075
-"""Of the mean diameter: unexplained jitter above which slices are said not to lie on each other. Of sound
-phantoms of 15 kinds 594 stay below but 2; slices laid down to ±3 mm and ±5° exceed it in 98 of 100
+"""Of the mean diameter: unexplained jitter above which slices are said not to lie on each other. Of 594
+sound phantoms of 15 kinds all but 1 stay below; slices laid down to ±3 mm and ±5° exceed it in 98 of 100
 (`docs/proof/stack-hazards.md`, `misaligned.md`)."""
 
 
