@@ -18,13 +18,20 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
+from stackloft_plugins.segmenters.body_window import main_body
 from stackloft_plugins.segmenters.grey import Grey
 
 DARKEST = 0.35
 """Of the plate's brightness: shadows on it are no deeper; what is darker is no shade of it."""
 _BRIGHT = 60.0 / 255.0
+_FINEST = 0.5
+"""L*a*b*: no plate is more even."""
 _OF_NOISE = 8.0
+"""Standard deviations of the plate's colour by which flesh of another colour differs at least."""
+_OF_SEEN = 0.25
+"""Of all that differs from the plate, shadows included: a smaller object is no body, but crumbs."""
 _OF_ALL = 0.25
+"""Of the difference from the plate, that part of it which is no shade's."""
 
 
 def lab_difference(colours: Grey, shade: Grey) -> Grey:
@@ -85,10 +92,12 @@ def tells_without_light(apart: Grey, blind: Grey, frame: Grey, plate: Grey) -> b
     plate : array (3)
         Only a bright plate shows shadows.
     """
-    seen = apart > 0.5 * float(np.quantile(apart, 0.99))
-    if float(plate.mean()) < _BRIGHT or not seen.any():
+    if float(plate.mean()) < _BRIGHT:
         return False
     usual = float(np.median(frame))
-    noise = 1.4826 * float(np.median(np.abs(frame - usual)))
-    step = float(np.quantile(blind[seen], 0.75)) - usual
-    return step > _OF_NOISE * max(noise, 0.5) and step > _OF_ALL * float(np.median(apart[seen]))
+    noise = max(1.4826 * float(np.median(np.abs(frame - usual))), _FINEST)
+    coloured = main_body((blind > usual + _OF_NOISE * noise).astype(np.uint8)) > 0
+    seen = apart > 0.5 * float(np.quantile(apart, 0.99))  # shadows too, which may be larger than the body
+    if not coloured.any() or np.count_nonzero(coloured) < _OF_SEEN * np.count_nonzero(seen):
+        return False
+    return bool(np.median(blind[coloured]) > _OF_ALL * np.median(apart[coloured]))
