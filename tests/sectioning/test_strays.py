@@ -44,6 +44,15 @@ def test_a_small_hole_in_one_section_is_glare(radius, left):
     assert [notice.code for notice in notices] == ["hole-filled"] * (2 - left)
 
 
+@pytest.mark.parametrize(("tip", "left"), [(10.0, 1), (5.5, 2)])
+def test_a_lamp_is_as_large_on_the_tip_as_on_the_middle(tip, left):
+    body, end, hole = disc(0.0, 20.0), disc(0.0, tip), disc(1.0, 2.8, hole=True)
+    sections = stack([end, hole], [body], [body])
+    found, notices = without_strays(sections, [[False, False], [False], [False]])
+    assert len(found[0].loops) == left
+    assert [notice.code for notice in notices] == ["hole-filled"] * (2 - left)
+
+
 def test_a_bore_stays():
     sections = stack(*[[disc(0.0, 20.0), disc(5.0, 4.0, hole=True)]] * 3)
     assert without_strays(sections, [[False, False]] * 3) == (sections, [])

@@ -37,6 +37,36 @@ def test_a_body_as_grey_as_the_plate_is_measured(noise):
     assert areas == pytest.approx(np.pi * (0.15 * radii) ** 2, rel=0.003)
 
 
+def shaded(flesh, plate, strength):
+    """A body of radius 60 on a bright plate, whose right half and a strip beside the body lie in shadow."""
+    rows, columns = np.mgrid[:200, :240]
+    far = np.hypot(rows - 99.3, columns - 118.6)
+    light = 1 - strength / (1 + np.exp(-(columns - 150.0) / 3)) - 0.15 * np.exp(-(((far - 66) / 3) ** 2))
+    covered = np.clip(0.5 - (far - 60), 0, 1)[..., None]
+    ground = np.array(plate) * light[..., None]
+    picture = ground + (np.array(flesh) - ground) * covered
+    return (picture + np.random.default_rng(1).normal(0, 1.5, picture.shape)).clip(0, 255).round()
+
+
+def found_area(picture):
+    field = colour_field(picture.astype(np.uint8), None, "a.png")
+    level = field.level if field.local_levels is None else field.local_levels
+    return float((field.values > level).sum())
+
+
+@pytest.mark.parametrize("strength", [0.0, 0.25, 0.5])
+def test_shadows_on_a_bright_plate_are_no_flesh(strength):
+    pale = shaded((231, 218, 176), (238, 237, 233), strength)
+    assert found_area(pale) == pytest.approx(np.pi * 60**2, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("flesh", "plate"), [((120, 119, 117), (238, 237, 233)), ((90, 90, 90), (20, 20, 22))]
+)
+def test_flesh_without_a_colour_of_its_own_is_told_by_its_brightness(flesh, plate):
+    assert found_area(shaded(flesh, plate, 0.0)) == pytest.approx(np.pi * 60**2, rel=0.01)
+
+
 def test_grey_and_empty_pictures_are_refused():
     with pytest.raises(InputError, match="histogram"):
         colour_field(np.zeros((30, 30), np.uint8), None, "a.png")

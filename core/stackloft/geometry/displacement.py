@@ -29,10 +29,15 @@ class Displacement:
     """Number of the first displaced point."""
     single: bool
     """True when that point alone is displaced; False when all that follow are."""
-    length: float
-    """In the path's unit."""
+    shift: tuple[float, float]
+    """Whereto, in the path's unit."""
     gain: float
     """Roughness as given by roughness without it, both with the noise's own added."""
+
+    @property
+    def length(self) -> float:
+        """In the path's unit."""
+        return float(np.hypot(*self.shift))
 
 
 def best_displacement(position: FloatArray, path: FloatArray, noise: float) -> Displacement | None:
@@ -68,7 +73,7 @@ def best_displacement(position: FloatArray, path: FloatArray, noise: float) -> D
             shift = (shape * given).sum(axis=0) / total
             left = given - shape * shift
             gain = (_variance(given) + noise**2) / (_variance(left) + noise**2)
-            found.append(Displacement(k, single, float(np.linalg.norm(shift)), gain))
+            found.append(Displacement(k, single, (float(shift[0]), float(shift[1])), gain))
     return max(found, key=lambda one: one.gain)
 
 

@@ -10,7 +10,7 @@ from stackloft.model.errors import InputError, StackloftError
 
 SUSPECT = (
     *("border-contact", "background-unsure", "slice-odd", "wrong-order", "slice-doubled", "motion"),
-    *("misaligned", "low-contrast", "edge-object"),
+    *("misaligned", "low-contrast", "flesh-unsure", "edge-object"),
 )
 """Codes of warnings that may say why sections cannot be joined, the likeliest first."""
 _TOLD = 2

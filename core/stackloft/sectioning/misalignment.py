@@ -2,12 +2,11 @@ r"""Slices that do not lie on each other, as slices photographed one by one with
 
 ::
 
-    jitter of the middles          The middles of a body's sections wander smoothly along the axis. Where a
-    -----------------------        body has kinks (a tilted end cut, a flange) they do not, but there the
-    kinks of the shape + width     sections' lengths and widths, which no laying-down changes, have kinks too.
+    jitter of the middles          The middles of a body's sections wander smoothly along the axis, or, where
+    -----------------------        a cut passes a corner, with a kink that the widths have too. What is
+    what the body may show         neither (`geometry.convex_wander`) comes from laying the slices down.
 
-Both are third differences (`geometry.roughness`); the jitter is their geometric mean of root mean square and
-median, so that neither one displaced slice nor one kink decides.
+The mean over the stack decides, so that neither one displaced slice nor one hollow of the body does.
 """
 
 from __future__ import annotations
@@ -16,18 +15,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from stackloft.geometry.convex_wander import unexplained_wander
 from stackloft.geometry.roughness import NOISE, third_differences
-from stackloft.geometry.second_moments import half_axes
 from stackloft.geometry.shoelace import polygon_area, polygon_centroid
 from stackloft.model.arrays import FloatArray
 from stackloft.model.notices import Notice
 
-LIMIT = 0.5
-"""Jitter by kinks and width, above which slices are said not to lie on each other. Sound phantoms of 15 kinds
-stay below 0.45 in 97 of 100 (foods below 0.26), the Visible Human's cryosections below 0.3; slices laid down
-to ±3 mm and ±5° reach 0.65 in 99 of 100 (`docs/proof/stack-hazards.md`, `misaligned.md`)."""
-_OF_WIDTH = 0.01
-"""Of the mean diameter: jitter of this size by itself is no reason to doubt."""
+LIMIT = 0.0075
+"""Of the mean diameter: unexplained jitter above which slices are said not to lie on each other. Of 594
+sound phantoms of 15 kinds all but 1 stay below; slices laid down to ±3 mm and ±5° exceed it in 98 of 100
+(`docs/proof/stack-hazards.md`, `misaligned.md`)."""
 
 
 def misaligned(names: Sequence[str], z: FloatArray, outlines: Sequence[FloatArray]) -> Notice | None:
@@ -56,27 +53,23 @@ def misaligned(names: Sequence[str], z: FloatArray, outlines: Sequence[FloatArra
     """
     diameter = float(np.sqrt(4 / np.pi * np.mean([abs(polygon_area(outline)) for outline in outlines])))
     middles = np.array([polygon_centroid(outline) for outline in outlines])
-    off = _lengths(z, middles)
-    rough = _lengths(z, np.array([half_axes(outline) for outline in outlines]))
-    jitter = float(np.sqrt(_rms(off) * np.median(off)))
-    if jitter <= LIMIT * (_rms(rough) + _OF_WIDTH * diameter):
+    jitter = float(unexplained_wander(z, outlines).mean())
+    if jitter <= LIMIT * diameter:
         return None
-    slope = _rms(off) / float(np.median(np.diff(z)))
+    off = _scatter(z, middles)
+    slope = off / float(np.median(np.diff(z)))
     message = (
-        f"{names[0]} … {names[-1]}: the sections' middles scatter by {_rms(off):.2g} mm "
-        f"({100 * _rms(off) / diameter:.1f} % of the body's width) from slice to slice, which may make the "
-        f"area {_excess(slope):.0f} % high; were the slices photographed one by one without marks? "
-        "--align rigid lays them on each other"
+        f"{names[0]} … {names[-1]}: the sections' middles scatter by {off:.2g} mm "
+        f"({100 * off / diameter:.1f} % of the body's width) from slice to slice, of which its own corners "
+        f"explain all but {jitter:.2g} mm; that may make the area {_excess(slope):.0f} % high; were the "
+        "slices photographed one by one without marks? --align rigid lays them on each other"
     )
     return Notice("misaligned", message)
 
 
-def _lengths(z: FloatArray, values: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.norm(third_differences(z, values), axis=1) / NOISE)
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt((values**2).mean()))
+def _scatter(z: FloatArray, middles: FloatArray) -> float:
+    """Return the standard deviation of the jitter that makes third differences such as the middles'."""
+    return float(np.sqrt((third_differences(z, middles) ** 2).sum(axis=1).mean())) / NOISE
 
 
 def _excess(slope: float) -> float:

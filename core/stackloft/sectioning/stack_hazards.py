@@ -17,7 +17,8 @@ from itertools import groupby
 
 import numpy as np
 
-from stackloft.geometry.displacement import best_displacement
+from stackloft.geometry.convex_wander import explained_displacement
+from stackloft.geometry.displacement import Displacement, best_displacement
 from stackloft.geometry.order_hypotheses import Supposition, best_supposition
 from stackloft.geometry.shoelace import polygon_area, polygon_centroid
 from stackloft.geometry.support_features import support_features
@@ -41,7 +42,8 @@ GAINS = {"swapped": 4.0, "moved": 4.0, "missing": 4.0, "doubled": 4.0, "outlier"
 MOVED = 10.0
 """Likewise for a displacement."""
 LEAST_MOVE = (0.015, 3.0)
-"""Of the mean diameter, and pixels: smaller displacements do no harm."""
+"""Of the mean diameter, and pixels: smaller displacements, beyond what the body's own corners may look like,
+do no harm."""
 LEAST_ODD = 0.01
 """Of the area: by which an odd section must differ from its neighbours' mean."""
 _EDGE = 0.1  # pixels: noise of a section's outline
@@ -191,17 +193,26 @@ def _odd(judged: _Judged, best: Supposition, told: str) -> tuple[Notice, ...]:
 
 
 def _motion(judged: _Judged) -> tuple[Notice, ...]:
-    middles = judged.middles
-    best = best_displacement(judged.z, middles, _EDGE * judged.pixel)
+    best = best_displacement(judged.z, judged.middles, _EDGE * judged.pixel)
+    if best is None or best.gain < MOVED or not _inside(best.first, judged):
+        return ()
     least = max(LEAST_MOVE[0] * judged.diameter, LEAST_MOVE[1] * judged.pixel)
-    if best is not None and best.gain >= MOVED and best.length >= least and _inside(best.first, judged):
-        whole = "lies" if best.single else "and all that follow lie"
-        message = (
-            f"{judged.names[best.first]}: {whole} {best.length:.2g} mm beside the others "
-            f"(the middles are {best.gain:.0f} times as smooth without that); camera or piece moved"
-        )
-        return (Notice("motion", message),)
-    return ()
+    if best.length < least or best.length - _own_corners(best, judged) < least:
+        return ()
+    whole = "lies" if best.single else "and all that follow lie"
+    message = (
+        f"{judged.names[best.first]}: {whole} {best.length:.2g} mm beside the others "
+        f"(the middles are {best.gain:.0f} times as smooth without that); camera or piece moved"
+    )
+    return (Notice("motion", message),)
+
+
+def _own_corners(found: Displacement, judged: _Judged) -> float:
+    """Return how much of a displacement a tilted body's corners may look like, mm."""
+    numbers = np.arange(len(judged.names))
+    displaced = numbers == found.first if found.single else numbers >= found.first
+    whereto = np.array(found.shift) / found.length
+    return explained_displacement(judged.z, judged.outlines, displaced, whereto)
 
 
 def _misaligned(judged: _Judged | None) -> tuple[Notice, ...]:

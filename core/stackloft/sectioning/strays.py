@@ -11,6 +11,9 @@ from stackloft.sectioning.section_regions import overlap
 
 GLARE = 0.06
 """Of a section's largest outline: a smaller hole is a reflection's when no neighbour has it."""
+LAMP = (0.02, 0.25)
+"""Of the stack's largest outline, but no more than so much of the section's own: likewise, for a lamp's
+mirror image is as large on a body's tip as on its middle."""
 _INSIDE = 0.98
 """Of a hole that lies within the body of a neighbouring section."""
 
@@ -34,6 +37,7 @@ def without_strays(
     closed.
     """
     kept, notices = list(sections), []
+    lamp = LAMP[0] * max((_largest(section) for section in sections if section.loops), default=0.0)
     for k, (section, touching) in enumerate(zip(sections, at_border, strict=True)):
         beside = [sections[i] for i in (k - 1, k + 1) if 0 <= i < len(sections)]
         stray = [
@@ -44,7 +48,7 @@ def without_strays(
             loops = tuple(loop for loop in section.loops if loop not in stray)
             notices.append(_at_the_edge(stray, loops, section.name))
             kept[k] = replace(section, loops=loops)
-        glare = [loop for loop in kept[k].loops if loop.hole and _closed(loop, kept[k], beside)]
+        glare = [loop for loop in kept[k].loops if loop.hole and _closed(loop, kept[k], beside, lamp)]
         if glare:
             kept[k] = replace(kept[k], loops=tuple(loop for loop in kept[k].loops if loop not in glare))
             notices.append(_filled(glare, kept[k]))
@@ -61,9 +65,10 @@ def _carried(loop: Loop, beside: Sequence[Section]) -> bool:
     )
 
 
-def _closed(hole: Loop, section: Section, beside: Sequence[Section]) -> bool:
-    """Return whether a hole is small, and flesh in all sections beside."""
-    if not beside or abs(hole.signed_area) > GLARE * _largest(section):
+def _closed(hole: Loop, section: Section, beside: Sequence[Section], lamp: float) -> bool:
+    """Return whether a hole is no larger than a reflection, and flesh in all sections beside."""
+    own = _largest(section)
+    if not beside or abs(hole.signed_area) > max(GLARE * own, min(lamp, LAMP[1] * own)):
         return False
     return all(overlap([hole.points], [loop.points for loop in other.loops]) >= _INSIDE for other in beside)
 

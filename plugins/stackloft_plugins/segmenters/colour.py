@@ -8,7 +8,9 @@ r"""Body and plate told apart by colour, for flesh whose grey is near the plate'
 
 The body is where the colour differs from the plate's (CIE 1976 L*a*b* difference, Otsu's threshold). That
 difference is not proportional to how much of a pixel the body covers, so the boundary itself is sought on
-the line from the plate's colour to that of the body's edge in RGB, half-way as in `half_way`.
+the line from the plate's colour to that of the body's edge in RGB, half-way as in `half_way`. Of flesh that
+has a colour of its own, shadows on the plate do not count (`plate_shades`). That line tells the boundary:
+deep within, where flesh may be paler than its skin, the difference has the word.
 """
 
 from __future__ import annotations
@@ -35,6 +37,12 @@ from stackloft_plugins.segmenters.grey import Grey, median_filtered
 from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge, inside_band, outside_band
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import on_one_level
+from stackloft_plugins.segmenters.plate_shades import (
+    across_shades,
+    difference_from_shades,
+    lab_difference,
+    tells_without_light,
+)
 from stackloft_plugins.segmenters.slice_field import mask_field
 
 _FRAME = 0.02  # of the shorter side
@@ -44,6 +52,8 @@ _FINEST = 0.5  # L*a*b*: no plate is more even
 _BRIGHT = 60.0  # of 255
 _NO_STEP = 4.0  # standard deviations of the plate's noise
 _LEAST_STEP = 6.0  # of 255
+_DEEP = 4
+"""Pixels from the boundary, beyond the bands that settle its level and beyond the median filter's reach."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,14 +117,12 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
     shape: tuple[int, int] = picture.shape[:2]
     step = coarse_step(shape)
     coarse = _scaled(picture[::step, ::step], full)
-    plate = _plate(coarse)
-    apart = median_filtered(_difference(coarse, plate))
+    plate, apart, blind = _look(coarse)
     level = _level(apart, name) if threshold is None else threshold
     light = _light(coarse, apart > level, step, shape)
     if light is not None:
         coarse /= light.at(np.arange(0, shape[0], step), np.arange(0, shape[1], step), np.float32)[..., None]
-        plate = _plate(coarse)
-        apart = median_filtered(_difference(coarse, plate))
+        plate, apart, blind = _look(coarse)
         level = _level(apart, name) if threshold is None else threshold
     window = body_window((apart > level).astype(np.uint8), step, shape)
     if window is None:
@@ -124,9 +132,11 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
         colours /= light.at(np.arange(shape[0])[window[0]], np.arange(shape[1])[window[1]], np.float32)[
             ..., None
         ]
-    grey, half = _along(
-        colours, main_body((median_filtered(_difference(colours, plate)) > level).astype(np.uint8))
-    )
+    difference = difference_from_shades if blind else lab_difference
+    body = main_body((median_filtered(difference(colours, plate)) > level).astype(np.uint8))
+    grey, half = _along(colours, body, plate if blind else None)
+    if grey is not None:
+        grey = _deep_within(grey, body)
     edge = None if grey is None else half_way_edge(grey, half)
     if grey is None or edge is None or _is_lost(grey, edge):
         raise _no_body(name, "no boundary between two colours")
@@ -191,17 +201,20 @@ def _frame(values: Grey) -> Grey:
     return np.concatenate([edge.reshape(-1, *values.shape[2:]) for edge in edges])
 
 
-def _difference(colours: Grey, plate: Grey) -> Grey:
-    """Return the L*a*b* difference of every pixel from the plate."""
-    lab = cv2.cvtColor(colours, cv2.COLOR_RGB2LAB)
-    own = cv2.cvtColor(plate.reshape(1, 1, 3), cv2.COLOR_RGB2LAB)
-    return np.asarray(np.linalg.norm(lab - own, axis=2), dtype=np.float32)
+def _look(coarse: Grey) -> tuple[Grey, Grey, bool]:
+    """Return the plate's colour, every pixel's difference from it, and whether that leaves its shades out."""
+    plate = _plate(coarse)
+    apart, blind = lab_difference(coarse, plate), difference_from_shades(coarse, plate)
+    if tells_without_light(apart, blind, _frame(blind), plate):
+        return plate, median_filtered(blind), True
+    return plate, median_filtered(apart), False
 
 
-def _along(colours: Grey, mask: Mask) -> tuple[Grey | None, float]:
+def _along(colours: Grey, mask: Mask, shades_of: Grey | None) -> tuple[Grey | None, float]:
     """Return how far each pixel lies on the way from the plate beside the edge to the body, and half of it.
 
     Lengths of the way are those of RGB from 0 to 255. Reflections and crumbs may lie beyond either end.
+    Given the plate's colour, only the way's part across its shades counts.
     """
     inner, outer = inside_band(mask), outside_band(mask)
     if not len(inner) or not len(outer):
@@ -209,11 +222,19 @@ def _along(colours: Grey, mask: Mask) -> tuple[Grey | None, float]:
     pixels = colours.reshape(-1, 3)
     beside = np.median(pixels[outer], axis=0)
     way = np.median(pixels[inner], axis=0) - beside
+    if shades_of is not None:
+        way = across_shades(way, shades_of)
     length = float(np.linalg.norm(way))
     if length == 0.0:
         return None, 0.0
     grey = np.asarray(255.0 * ((colours - beside) @ (way / length)), dtype=np.float32)
     return median_filtered(grey), 127.5 * length
+
+
+def _deep_within(grey: Grey, body: Mask) -> Grey:
+    """Return the grey levels with no pixel deep within the body below its edge's own."""
+    deep = cv2.erode(body, np.ones((2 * _DEEP + 1, 2 * _DEEP + 1), np.uint8)) > 0
+    return np.where(deep, np.maximum(grey, np.float32(np.median(grey[inside_band(body)]))), grey)
 
 
 def _no_body(name: str, found: str) -> InputError:

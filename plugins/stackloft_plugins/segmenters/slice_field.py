@@ -21,6 +21,7 @@ from stackloft_plugins.segmenters.grey import Grey, filtered, grey_levels, singl
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import on_one_level
+from stackloft_plugins.segmenters.unclear_flesh import unclear_notice, unclear_share
 
 _NO_STEP = 4.0  # a boundary whose step is below this many standard deviations of noise is none
 _FAINT = 10.0
@@ -86,6 +87,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     edge = _edge(grey, sign * first, rules, name)
     level = edge_level(grey, edge) if rules.settles else sign * first
     notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
+    notices += unclear_notice(unclear_share(grey, edge, level), name)
     if rules.background is None and not background.sure:
         notices.append(_unsure(name))
     if rules.settles:
@@ -177,7 +179,7 @@ def _contrast_notices(grey: Grey, edge: Edge, scale: float, name: str) -> tuple[
         return ()
     message = (
         f"{name}: body and background differ by only {step:.3g} grey levels (noise {noise:.2g}); "
-        "look at its contour"
+        "look at its contour; where they differ by colour, --segmenter colour tells them apart"
     )
     return (Notice("low-contrast", message),)
 
