@@ -21,6 +21,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.distance import pdist
 
+from stackloft.geometry.equal_choices import least_of, points_ahead
 from stackloft.geometry.plane_nodes import centred_nodes
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area, polygon_centroid
@@ -161,7 +162,8 @@ def evened(points: FloatArray, most: int) -> FloatArray:
 
     It begins at the vertex farthest from the centre, wherever the line was begun.
     """
-    first = int(np.argmax(np.round(np.linalg.norm(points - polygon_centroid(points), axis=1), 9)))
+    away = np.linalg.norm(points - polygon_centroid(points), axis=1)
+    first = least_of(-away, points_ahead(points), float(away.max()))
     points = np.roll(points, -first, axis=0)
     return _even_vertices(np.concatenate([points, points[:1]]), min(most, max(24, len(points) // 2)))
 
