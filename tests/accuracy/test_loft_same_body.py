@@ -20,12 +20,9 @@ SAME, MIRRORED = 1e-9, 1e-5
 POSES = {label: phantom for kind in phantoms.TOPOLOGY for label, phantom in kind.phantoms()}
 QUICK = (
     "torus upright",
-    "torus leaning",
     "tube lying",
-    "blind-hole leaning",
     "dumbbell lying",
     "y-branch leaning",
-    "apple square to its core",
     "horseshoe askew",
     "ring-branch flat",
     "two-bodies in pose 4",

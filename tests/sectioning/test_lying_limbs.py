@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stackloft.geometry.shoelace import polygon_area
+from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.levels import Level
 from stackloft.sectioning.lying_limbs import ROOTS, limbs_cut_off
@@ -66,6 +67,19 @@ def test_limbs_are_cut_off_whichever_way_they_go(directions, upward):
 )
 def test_what_grows_is_no_limb(grown):
     assert limbs_cut_off(level(circle(10.0), 0.0, 0), level(grown, 1.0, 1)) is None
+
+
+def test_a_root_across_a_bay_is_no_cut():
+    """Where a bent limb's root would be cut through the air, it is left: what is cut off is simple."""
+    hook = np.array(
+        [[10, -1], [30, -1], [30, 1], [13, 1], [13, 6], [10, 6], [10, 9], [-10, 9], [-10, -9], [10, -9]]
+    )
+    dense = [
+        a + (b - a) * k / 40 for a, b in zip(hook, np.roll(hook, -1, axis=0), strict=True) for k in range(40)
+    ]
+    plain = np.array([[-10, -9], [10, -9], [10, 9], [-10, 9]], dtype=float)
+    step = limbs_cut_off(level(plain, 0.0, 0), level(np.array(dense), 1.0, 1))
+    assert step is None or not any(crosses_itself(part.points[None])[0] for part in step.cut.parts)
 
 
 def test_holes_are_left_alone():

@@ -21,6 +21,7 @@ import numpy as np
 from stackloft.geometry.bridge_cut import cut_off
 from stackloft.geometry.polygon_distance import signed_distance_at
 from stackloft.geometry.shoelace import polygon_area, polygon_perimeter
+from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.sectioning.level_changes import Joined
 from stackloft.sectioning.levels import Level, is_hole
@@ -49,6 +50,8 @@ def limbs_cut_off(low: Level, high: Level) -> Joined | None:
     if not runs:
         return None
     cut = cut_off(longer, runs)
+    if any(crosses_itself(part.points[None])[0] for part in cut.parts):  # a root across a bay
+        return None
     return Joined(cut, upward, (len(runs),))
 
 
