@@ -30,6 +30,10 @@ SLENDER = 5.0
 """Outline of a limb, in widths of its root, at least: it is more than two widths long."""
 ROOTS = (0.01, 0.02, 0.04)
 """How far outside the other section's loop a limb's root is looked for, in lengths of that loop."""
+WIDER = 1.3
+"""Mean width of a limb, in widths of its root, at most: what is broad beyond a narrow root is the body."""
+LEFT = 0.8
+"""What is left without limbs has at least this part of the other section's area."""
 LONGER = 0.04
 """A loop is longer than its neighbour by at least this part of its length when it has grown a limb."""
 
@@ -50,9 +54,18 @@ def limbs_cut_off(low: Level, high: Level) -> Joined | None:
     if not runs:
         return None
     cut = cut_off(longer, runs)
+    *limbs, rest = (part.points for part in cut.parts)
+    if polygon_area(rest) < LEFT * polygon_area(other) or not all(_is_straight(limb) for limb in limbs):
+        return None
     if any(crosses_itself(part.points[None])[0] for part in cut.parts):  # a root across a bay
         return None
     return Joined(cut, upward, (len(runs),))
+
+
+def _is_straight(limb: FloatArray) -> bool:
+    """Return whether a part is hardly wider farther out than its root, from its last vertex to its first."""
+    root = float(np.linalg.norm(limb[0] - limb[-1]))
+    return polygon_area(limb) < WIDER * root * 0.5 * (polygon_perimeter(limb) - root)
 
 
 def _may_have_limbs(longer: FloatArray, other: FloatArray) -> bool:
