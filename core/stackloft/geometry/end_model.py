@@ -61,7 +61,7 @@ def distance_to_end(areas: FloatArray, depth: FloatArray, q: float = ROUND) -> f
 
 def _positive_roots(c: float, b: float, a: float) -> list[float]:
     """Return the positive roots of c·t² + b·t + a."""
-    if abs(c) * a < 1e-14 * b * b:
+    if abs(c) * a <= 1e-14 * b * b:
         return [-a / b] if b < 0 else []
     discriminant = b * b - 4.0 * a * c
     if discriminant < 0.0:
