@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from stackloft.model.contour_stack import ContourStack, Loop, Section
-from stackloft.model.errors import InputError
 from stackloft.testing import phantoms
 from stackloft_plugins.integrators.polyhedral import Polyhedral
 from stackloft_plugins.integrators.surface_gauss import SurfaceGauss
@@ -86,58 +84,6 @@ def test_area_does_not_depend_on_how_many_sections_pass_through_a_branch(count):
     assert abs(area) <= AREA
 
 
-def rolled(loop, by):
-    corners = np.sort((loop.corners + by) % len(loop.points))
-    return Loop(np.roll(loop.points, by, axis=0), corners, loop.hole)
-
-
-def reordered(stack, seed):
-    rng = np.random.default_rng(seed)
-    sections = []
-    for section in stack.sections:
-        loops = [rolled(loop, int(rng.integers(len(loop.points)))) for loop in section.loops]
-        sections.append(
-            Section(section.z, tuple(loops[k] for k in rng.permutation(len(loops))), section.name)
-        )
-    return ContourStack(tuple(sections))
-
-
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(
-    ("label", "allowed"),
-    [
-        ("blind-hole leaning", 1e-9),
-        ("ring-branch leaning", 1e-9),
-        ("torus upright", 1e-5),  # its cuts have mirror images of equal length, and one must be taken
-    ],
-)
-def test_loop_order_and_start_points_decide_nothing(label, allowed, seed):
-    stack = stack_of(dict(kind_poses())[label], 11)
-    base, other = (
-        SurfaceGauss().integrate(LoftReconstructor().reconstruct(s)) for s in (stack, reordered(stack, seed))
-    )
-    assert other.volume == pytest.approx(base.volume, rel=allowed)
-    assert other.area == pytest.approx(base.area, rel=allowed)
-
-
-def test_a_mirrored_body_measures_the_same():
-    phantom = phantoms.make("y-branch")
-    stack = stack_of(phantom, 15)
-    flipped = ContourStack(
-        tuple(
-            Section(
-                s.z,
-                tuple(Loop(loop.points * [-1.0, 1.0], loop.corners, loop.hole) for loop in s.loops),
-                s.name,
-            )
-            for s in stack.sections
-        )
-    )
-    base, other = (SurfaceGauss().integrate(LoftReconstructor().reconstruct(s)) for s in (stack, flipped))
-    assert other.volume == pytest.approx(base.volume, rel=2e-5)
-    assert other.area == pytest.approx(base.area, rel=1e-4)
-
-
 @pytest.mark.parametrize("count", [41, pytest.param(120, marks=pytest.mark.prove)])
 def test_levels_a_hair_apart_add_no_area(count):
     """Of a ring cut askew by many sections: columns that slipped there once made it four times as large."""
@@ -151,8 +97,11 @@ def kind_poses():
     return [(label, phantom) for kind in phantoms.TOPOLOGY for label, phantom in kind.phantoms()]
 
 
-def test_a_skin_whose_columns_slipped_is_no_figure():
-    """A lying limb appears at once between two sections: 12 % of false area were once a figure."""
+@pytest.mark.parametrize("count", [53, pytest.param(40, marks=pytest.mark.prove)])
+def test_a_lying_limb_may_appear_at_once(count):
+    """It has no beginning on the section before: its skin once slipped there, by 12 % of false area."""
     phantom = dict(kind_poses())["ring-branch flat"]
-    with pytest.raises(InputError, match="section_09: the loft folds"):
-        errors(stack_of(phantom, 53), phantom)
+    volume, area, solid = errors(stack_of(phantom, count), phantom)
+    assert abs(volume) <= VOLUME
+    assert abs(area) <= 0.1
+    assert len(solid.joints) == 2  # the limb's roots, where it appears and where it is gone again

@@ -17,6 +17,7 @@ from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 from stackloft.geometry.bridge_edges import BridgeCut, CutLine, assembled, source
+from stackloft.geometry.equal_choices import EQUAL, chords_ahead, least_of
 from stackloft.geometry.plane_nodes import centred_nodes
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area
@@ -61,10 +62,7 @@ def cut_bridges(
     """
     if splits + merges > MOST:
         return None
-    lines = [
-        CutLine(p, np.column_stack([np.full(len(p), w), np.arange(len(p))]), np.zeros(len(p), dtype=np.int64))
-        for w, p in enumerate(joined)
-    ]
+    lines = [_line(p, w) for w, p in enumerate(joined)]
     cost = _ChordCost(joined, parted, CANDIDATES if splits + merges < MANY else FEWER)
     chords: list[tuple[tuple[int, int], tuple[int, int]]] = []
     for kind in ["merge"] * merges + ["split"] * splits:
@@ -78,6 +76,35 @@ def cut_bridges(
         )
         lines = [line for k, line in enumerate(lines) if k not in {a, b}] + made
     return assembled(joined, lines, chords)
+
+
+def cut_off(loop: FloatArray, runs: list[tuple[int, int]]) -> BridgeCut:
+    """Cut stretches of a loop off, each along the chord from its first vertex to its last.
+
+    Parameters
+    ----------
+    loop : (k, 2) array
+        Polygon, mm, body on the left.
+    runs : list of (first, last)
+        Vertices; no two stretches overlap.
+
+    Returns
+    -------
+    BridgeCut
+        Its parts are the stretches in order, and last what is left of the loop.
+    """
+    rest, parts = _line(loop, 0), []
+    for number, ends in enumerate(runs, start=1):
+        i, j = (int(np.flatnonzero(rest.source[:, 1] == end)[0]) for end in ends)
+        part, rest = _split(rest, i, j, number)
+        parts.append(part)
+    return assembled([loop], [*parts, rest], [((0, first), (0, last)) for first, last in runs])
+
+
+def _line(loop: FloatArray, number: int) -> CutLine:
+    """Return a loop not yet cut."""
+    source_of = np.column_stack([np.full(len(loop), number), np.arange(len(loop))])
+    return CutLine(loop, source_of, np.zeros(len(loop), dtype=np.int64))
 
 
 def _split(line: CutLine, i: int, j: int, chord: int) -> list[CutLine]:
@@ -113,16 +140,13 @@ class _ChordCost:
         self._candidates = candidates
         every = np.concatenate([*joined, *parted])
         low, high = every.min(axis=0), every.max(axis=0)
-        self._step = float((high - low).max()) / 128.0
+        self._size = float((high - low).max())
+        self._step = self._size / 128.0
         x, y = centred_nodes(low, high, self._step, 2)
         self._origin = np.array([x[0], y[0]])
         self._own = signed_distance(x, y, _dense(joined, self._step))
         self._other = signed_distance(x, y, _dense(parted, self._step))
-        outlines = [p for p in parted if polygon_area(p) > 0.0]
-        self._count = len(outlines)
-        if outlines:
-            self._labels = np.concatenate([np.full(len(p), k) for k, p in enumerate(outlines)])
-            self._tree = cKDTree(np.concatenate(outlines))
+        self._trees = [cKDTree(p) for p in parted if polygon_area(p) > 0.0]
 
     def _price(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return the cost of chords between points, (n, 2) each."""
@@ -145,13 +169,9 @@ class _ChordCost:
 
     def _split_of(self, line: CutLine) -> tuple[float, int, int] | None:
         chosen = _spread(line, self._candidates)
-        if len(chosen) < FEWEST or self._count < FEWEST:
+        if len(chosen) < FEWEST or len(self._trees) < FEWEST:
             return None
-        label = self._labels[self._tree.query(line.points)[1]]
-        side = np.linalg.norm(np.roll(line.points, -1, axis=0) - line.points, axis=1)
-        share = np.zeros((len(label) + 1, self._count))
-        np.add.at(share, (np.arange(len(label)) + 1, label), side)
-        share = np.cumsum(share, axis=0)
+        share = self._shares(line.points)
         total = share[-1]
         if (total > 0.0).sum() < 2:
             return None
@@ -162,8 +182,20 @@ class _ChordCost:
         kinds = ((inner > 0.5 * total) & (total > 0.0)).sum(axis=1)
         cost = self._price(line.points[i], line.points[j]) + MISLAID * mislaid
         cost[(kinds == 0) | (kinds == (total > 0.0).sum())] = np.inf
-        best = int(np.argmin(cost))
+        best = least_of(cost, chords_ahead(line.points[i], line.points[j]), self._size)
         return (float(cost[best]), int(i[best]), int(j[best])) if np.isfinite(cost[best]) else None
+
+    def _shares(self, points: FloatArray) -> FloatArray:
+        """Return how much of the line's first k sides lies nearest to each outline, (n + 1, outlines) mm.
+
+        Half of a side goes by either end; a vertex half-way between two outlines is half the one's.
+        """
+        away = np.stack([tree.query(points)[0] for tree in self._trees], axis=1)
+        nearest = away <= away.min(axis=1, keepdims=True) + EQUAL * self._size
+        owner = nearest / nearest.sum(axis=1, keepdims=True)
+        side = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+        own = 0.5 * side[:, None] * (owner + np.roll(owner, -1, axis=0))
+        return np.concatenate([np.zeros((1, own.shape[1])), np.cumsum(own, axis=0)])
 
     def best_merge(self, lines: list[CutLine]) -> tuple[int, int, int, int] | None:
         """Return the best chord between two loops of which one at least is a hole."""
@@ -178,8 +210,9 @@ class _ChordCost:
                 if not a.size:
                     continue
                 i, j = a.ravel(), b.ravel()
-                cost = self._price(one.points[i], two.points[j])
-                k = int(np.argmin(cost))
+                start, end = one.points[i], two.points[j]
+                cost = self._price(start, end)
+                k = least_of(cost, chords_ahead(start, end), self._size)
                 if cost[k] < best:
                     best, choice = float(cost[k]), (p, int(i[k]), q, int(j[k]))
         return choice

@@ -9,7 +9,7 @@ from: the phase of the first Fourier coefficient of the curve (Kuhl & Giardina 1
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -85,6 +85,39 @@ class CurveStack:
         point = p0 + x * (rise + (1.0 - x) * (a * (1.0 - x) + b * x))
         slope = rise + (1.0 - 2.0 * x) * (a * (1.0 - x) + b * x) + x * (1.0 - x) * (b - a)
         return point, slope / span[..., None]
+
+    def flipped(self, flip: tuple[float, float]) -> CurveStack:
+        """Return the curves with x and y multiplied by 1 or -1, counter-clockwise again.
+
+        In one mirror each runs the other way from the same vertex; its canonical start is the mirrored one
+        (y alone), or half a loop from that, since it lies to the right of the middle.
+        """
+        scale = np.array(flip)
+        half = 0.0 if flip[0] > 0.0 else 0.5
+        centroids = self.centroids * scale
+        if flip[0] * flip[1] > 0.0:
+            return replace(
+                self,
+                points=self.points * scale,
+                ends=self.ends * scale,
+                leaving=self.leaving * scale,
+                arriving=self.arriving * scale,
+                starts=self.starts + half,
+                centroids=centroids,
+            )
+        section = np.repeat(np.arange(len(self)), np.diff(self.first))
+        back = (self.first[:-1] + self.first[1:] - 1)[section] - np.arange(len(section))
+        passed = np.append(2 * section + 1 - self.knots[1:][back], float(len(self)))
+        return replace(
+            self,
+            points=self.ends[back] * scale,
+            ends=self.points[back] * scale,
+            leaving=-self.arriving[back] * scale,
+            arriving=-self.leaving[back] * scale,
+            knots=passed,
+            starts=half - self.starts,
+            centroids=centroids,
+        )
 
 
 def fit_curves(loops: list[FloatArray], corners: list[IntArray]) -> CurveStack:

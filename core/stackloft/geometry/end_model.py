@@ -21,6 +21,8 @@ ROUND = 1.0
 """q of a smooth round end."""
 SHAPES = (2.0 / 3.0, 4.0 / 3.0)
 """Exponents between which a body's end is expected: blunter and sharper than round."""
+FARTHEST = 1e6
+"""Times the depth of the sections looked at beyond which nothing closes."""
 
 
 def distance_to_end(areas: FloatArray, depth: FloatArray, q: float = ROUND) -> float | None:
@@ -53,12 +55,13 @@ def distance_to_end(areas: FloatArray, depth: FloatArray, q: float = ROUND) -> f
     # value ≈ a + b·depth + c·depth²; the end lies at depth = -distance
     c, b, a = np.polyfit(x, value, 2) if len(value) == 3 else (0.0, *np.polyfit(x, value, 1))
     roots = _positive_roots(c, -b, a)
-    return float(min(roots)) if roots else None
+    # areas that are equal but for rounding do not close, whichever way the rounding goes
+    return float(min(roots)) if roots and min(roots) < FARTHEST * x[-1] else None
 
 
 def _positive_roots(c: float, b: float, a: float) -> list[float]:
     """Return the positive roots of c·t² + b·t + a."""
-    if abs(c) * a < 1e-14 * b * b:
+    if abs(c) * a <= 1e-14 * b * b:
         return [-a / b] if b < 0 else []
     discriminant = b * b - 4.0 * a * c
     if discriminant < 0.0:

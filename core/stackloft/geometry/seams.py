@@ -53,7 +53,7 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
     SeamPhases
         Section i's point at phases[i] + s corresponds to section i + 1's at phases[i + 1] + s. The
         score depends on differences of phase alone, so solving pair after pair is the optimum over
-        the whole stack; among near ties the one that continues the twist so far is taken.
+        the whole stack; among near ties the one nearest to the twist above and below is taken.
 
     Examples
     --------
@@ -138,9 +138,14 @@ def _best_steps(score: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     steps = fraction[np.arange(len(score)), near.argmax(axis=1)]
     steps[~near.any(axis=1)] = 0.0
     tied = np.zeros(len(score), dtype=bool)
+    sure = np.flatnonzero(near.sum(axis=1) < 2)
     for pair in np.flatnonzero(near.sum(axis=1) > 1):
         candidates = fraction[pair, near[pair]]
-        twist = steps[pair - 1] if pair else 0.0
+        at = int(np.searchsorted(sure, pair))
+        beside = sure[
+            max(at - 1, 0) : at + 1
+        ]  # from below as from above: turned over, the stack stays the same
+        twist = steps[beside].mean() if len(beside) else 0.0
         steps[pair] = candidates[np.argmin(np.round(np.abs(candidates - twist), 9))]
         apart = np.abs((candidates - steps[pair] + 0.5) % 1.0 - 0.5)
         tied[pair] = (apart > APART).any()

@@ -22,7 +22,7 @@ from enum import Enum
 import numpy as np
 
 from stackloft.geometry.joined_tubes import Tube, TubeJoint, tessellate_tubes
-from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
+from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints, read_only
 from stackloft.model.errors import UsageError
 from stackloft.model.measurement import EndReport
 from stackloft.model.notices import Notice
@@ -93,6 +93,30 @@ class LoftedSolid:
     """(4, 4) from stack millimetres to bench millimetres."""
     notices: tuple[Notice, ...] = ()
     joints: tuple[Joint, ...] = ()
+
+    def flipped(self, flip: tuple[float, float]) -> LoftedSolid:
+        """Return the solid with x and y multiplied by 1 or -1, where it lay on the bench, and outward again.
+
+        In one mirror the shells' u runs the other way.
+        """
+        if flip == (1.0, 1.0):
+            return self
+        scale, mirror = np.array([*flip, 1.0]), flip[0] * flip[1] < 0.0
+
+        def turned(shell: Shell) -> Shell:
+            patches = shell.patches * scale
+            return Shell(read_only(patches[:, ::-1, :, ::-1] if mirror else patches), shell.ends)
+
+        def rim(one: JointRim) -> JointRim:
+            back = tuple((edge, not forward) for edge, forward in reversed(one.edges))
+            return JointRim(one.shell, one.at_last, back) if mirror else one
+
+        joints = (
+            Joint(tuple(frozen_floats(edge * scale) for edge in joint.edges), tuple(map(rim, joint.rims)))
+            for joint in self.joints
+        )
+        affine = frozen_floats(self.affine * [*flip, 1.0, 1.0])
+        return LoftedSolid(tuple(map(turned, self.shells)), self.ends, affine, self.notices, tuple(joints))
 
     def tessellate(self, tolerance: float) -> TriMesh:
         """Return a closed outward triangle surface.

@@ -26,8 +26,8 @@ class CornerChain:
 
     @property
     def mean(self) -> float:
-        """Mean place as a fraction of the loop in [0, 1)."""
-        return float(np.mean(list(self.at.values()))) % 1.0
+        """Mean place as a fraction of the loop in [0, 1); at the seam 0, whichever way rounding goes."""
+        return round(float(np.mean(list(self.at.values()))) % 1.0, 12) % 1.0
 
 
 def follow_corners(
@@ -55,7 +55,8 @@ def follow_corners(
     -------
     list of CornerChain
         A corner that shows on fewer than a fifth of the sections, or on one alone, is taken for noise.
-        Chains that would cross or meet on any section are cut to the longer one.
+        Chains that would cross or meet on any section become one column where they show on different
+        sections (the pins of joints at both ends of a tube), else the longer one stays.
     """
     chains: list[dict[int, float]] = []
     active: list[dict[int, float]] = []
@@ -64,9 +65,9 @@ def follow_corners(
         active = _extend(active, section, marks, chains, float(within[section]))
     least = max(min(2, len(corners)), math.ceil(PERSISTENT * len(corners)))
     long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least or kept & chain.keys()]
-    longest = sorted(long_enough, key=lambda chain: (not kept & chain.at.keys(), -len(chain.at), chain.mean))[
-        : count // 2
-    ]
+    longest = sorted(
+        long_enough, key=lambda chain: (not kept & chain.at.keys(), -len(chain.at), round(chain.mean, 9))
+    )[: count // 2]
     return _uncrossed(longest, len(corners), APART / count)
 
 
@@ -105,10 +106,24 @@ def _uncrossed(chains: list[CornerChain], sections: int, apart: float) -> list[C
     """Return the chains, longest first to stay, that keep one cyclic order and distance on all sections."""
     kept: list[CornerChain] = []
     for chain in chains:
-        trial = sorted([*kept, chain], key=lambda c: c.mean)
-        if all(_in_order(trial, section, apart) for section in range(sections)):
-            kept = trial
+        for others, one in [(kept, chain), *_joined(kept, chain)]:
+            trial = sorted([*others, one], key=lambda c: c.mean)
+            if all(_in_order(trial, section, apart) for section in range(sections)):
+                kept = trial
+                break
     return kept
+
+
+def _joined(kept: list[CornerChain], chain: CornerChain) -> list[tuple[list[CornerChain], CornerChain]]:
+    """Return the ways in which a chain goes on in one of those kept, nearest first: (the others, the one)."""
+    ways = []
+    for other in kept:
+        apart = _wrapped(chain.mean - other.mean)
+        if abs(apart) < REACH and not other.at.keys() & chain.at.keys():
+            turns = round(float(np.mean(list(other.at.values())) + apart - np.mean(list(chain.at.values()))))
+            at = {**other.at, **{k: place + turns for k, place in chain.at.items()}}
+            ways.append((abs(apart), [c for c in kept if c is not other], CornerChain(at)))
+    return [(others, one) for _, others, one in sorted(ways, key=lambda way: way[0])]
 
 
 def _in_order(chains: list[CornerChain], section: int, apart: float) -> bool:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from stackloft.geometry.curve_stack import CurveStack
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
@@ -44,3 +44,40 @@ def curve_polygon(curves: CurveStack, k: int, step: float) -> FloatArray:
     fractions = (knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(parts) / parts)).ravel()
     points, _ = curves.at(np.full(len(fractions), k), fractions - k - curves.starts[k])
     return points
+
+
+def even_polygon(curves: CurveStack, k: int, corners: IntArray, fewest: int) -> FloatArray:
+    """Return curve k as a polygon of even sides, (n, 2) mm: the same wherever its own vertices lie.
+
+    Parameters
+    ----------
+    curves : CurveStack
+    k : int
+    corners : (c,) array
+        Vertices of the curve that the polygon goes through; its sides are even between them. Without any it
+        begins at the canonical start and n is even, so that mirrored curves get mirrored polygons.
+    fewest : int
+        Sides at least; there are no fewer than the curve has vertices.
+
+    Examples
+    --------
+    >>> from stackloft.geometry.curve_stack import fit_curves
+    >>> t = 0.1 + 2 * np.pi * np.arange(50) / 50
+    >>> curves = fit_curves([np.column_stack([np.cos(t), np.sin(t)])], [np.array([], dtype=int)])
+    >>> polygon = even_polygon(curves, 0, np.array([], dtype=int), 80)
+    >>> len(polygon), (polygon[::20].round(6) + 0.0).tolist()
+    (80, [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    """
+    count = max(fewest, int(curves.first[k + 1] - curves.first[k]))
+    if not len(corners):
+        count += count % 2
+        return curves.at(np.full(count, k), np.arange(count) / count)[0]
+    places = np.sort(curves.knots[curves.first[k] + corners] - k)
+    gaps = np.diff(np.append(places, places[0] + 1.0))
+    pieces = [
+        place + gap * (np.arange(parts) / parts)
+        for place, gap in zip(places, gaps, strict=True)
+        for parts in (max(1, math.ceil(count * gap - 1e-6)),)
+    ]
+    fractions = np.concatenate(pieces)
+    return curves.at(np.full(len(fractions), k), fractions - curves.starts[k])[0]

@@ -155,8 +155,8 @@ def _solve_seams(curves: CurveStack, loops: list[Loop], contours: ContourStack) 
 def _tie_notice(before: str, after: str) -> Notice:
     return Notice(
         "seam-ambiguous",
-        f"{after}: two ways of turning it against {before} fit almost equally well; the one that continues"
-        " the twist so far was taken: cut thinner slices if the body twists",
+        f"{after}: two ways of turning it against {before} fit almost equally well; the one nearest to"
+        " the twist above and below was taken: cut thinner slices if the body twists",
     )
 
 

@@ -24,7 +24,7 @@ from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.levels import Level, is_hole, put_in_level, reversed_loop
 from stackloft.sectioning.roof import TURNS, Thickness, closing_depth
-from stackloft.sectioning.sections_between import SIDES, evened_loop, grid_lines, plane_grid, zero_lines
+from stackloft.sectioning.sections_between import SIDES, evened_loop, grid_lines, plane_grid
 
 CLOSING = 4.0
 """Radius, in half widths of the gap, of the disc that closes it: its ends dip in by an eighth of a width."""
@@ -83,7 +83,7 @@ class _Planes:
         radius = CLOSING * half
         reach = int(np.ceil(radius / (self.x[1] - self.x[0]))) + 2
         wide_x, wide_y = (_longer(axis, reach) for axis in (self.x, self.y))
-        grown = zero_lines(signed_distance(wide_x, wide_y, parts) + radius, wide_x, wide_y)
+        grown = grid_lines(signed_distance(wide_x, wide_y, parts) + radius, wide_x, wide_y)
         self.half = half
         self.whole = signed_distance(self.x, self.y, outline)
         self.parts = signed_distance(self.x, self.y, parts)

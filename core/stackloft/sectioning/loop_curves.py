@@ -64,6 +64,28 @@ def ready_curves(contours: ContourStack) -> CurveStack:
     return curves
 
 
+def mirror_ready(contours: ContourStack, mirrored: ContourStack, flip: tuple[float, float]) -> None:
+    """Remember for a stack with x and y multiplied what `ready_loops` and `ready_curves` give for the other.
+
+    Raises
+    ------
+    InputError
+        As these do.
+    """
+    _READY[mirrored] = tuple(
+        tuple(_mirrored(loop, flip) for loop in loops) for loops in ready_loops(contours)
+    )
+    _CURVES[mirrored] = ready_curves(contours).flipped(flip)
+
+
+def _mirrored(loop: Loop, flip: tuple[float, float]) -> Loop:
+    """Return a counter-clockwise loop with x and y multiplied, counter-clockwise from the same vertex."""
+    points = loop.points * np.array(flip)
+    if flip[0] * flip[1] > 0.0:
+        return Loop(points, loop.corners)
+    return Loop(np.roll(points[::-1], 1, axis=0), np.sort(-loop.corners % len(points)))
+
+
 def _smooth(contours: ContourStack) -> list[Loop]:
     """Return all loops, smoothed when they were traced."""
     flat = [loop for section in contours.sections for loop in section.loops]

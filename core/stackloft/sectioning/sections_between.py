@@ -21,6 +21,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.distance import pdist
 
+from stackloft.geometry.equal_choices import least_of, points_ahead
 from stackloft.geometry.plane_nodes import centred_nodes
 from stackloft.geometry.polygon_distance import signed_distance
 from stackloft.geometry.shoelace import polygon_area, polygon_centroid
@@ -161,14 +162,19 @@ def evened(points: FloatArray, most: int) -> FloatArray:
 
     It begins at the vertex farthest from the centre, wherever the line was begun.
     """
-    first = int(np.argmax(np.round(np.linalg.norm(points - polygon_centroid(points), axis=1), 9)))
-    points = np.roll(points, -first, axis=0)
+    points = _from_farthest(points)
     return _even_vertices(np.concatenate([points, points[:1]]), min(most, max(24, len(points) // 2)))
+
+
+def _from_farthest(points: FloatArray) -> FloatArray:
+    """Return a closed polygon begun at the vertex farthest from its centre."""
+    away = np.linalg.norm(points - polygon_centroid(points), axis=1)
+    return np.roll(points, -least_of(-away, points_ahead(points), float(away.max())), axis=0)
 
 
 def evened_loop(points: FloatArray, pixel: float, most: int) -> Loop:
     """Return a line traced on a grid as a loop, its corners put back, the vertices between evenly spaced."""
-    loop = with_corners(Loop(points), pixel)
+    loop = with_corners(Loop(_from_farthest(points)), pixel)
     if not len(loop.corners) or _facing(loop.points[loop.corners]) < FACING * pixel:
         return Loop(evened(points, most))
     count = min(most, max(24, len(points) // 2))

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stackloft.geometry.equal_choices import points_ahead
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import Loop
 
@@ -106,7 +107,10 @@ def with_corners(loop: Loop, pixel: float, rules: CornerRules | None = None) -> 
     if not len(turning):
         return loop
     sides = _sides(samples, turning, reach)
-    chosen = _corner_samples(sides, rules, turning, count, round(window / STEP))
+    likely = _likely(sides, rules)
+    ahead = points_ahead(samples[turning])
+    order = sorted(likely.tolist(), key=lambda k: (round(float(sides.miss[k]), 6), -ahead[k]))
+    chosen = _apart(order, turning, count, round(window / STEP))
     if not len(chosen):
         return loop
     places = turning[chosen] * along[-1] / count
@@ -207,18 +211,22 @@ def _meeting(start: FloatArray, forth: FloatArray, end: FloatArray, back: FloatA
     return meeting
 
 
-def _corner_samples(sides: _Sides, rules: CornerRules, here: IntArray, count: int, apart: int) -> IntArray:
-    """Return which of the samples `here` (of `count`) are nearest to corners, in order around the loop."""
+def _likely(sides: _Sides, rules: CornerRules) -> IntArray:
+    """Return the samples whose two sides meet as at a corner."""
     with np.errstate(invalid="ignore"):
-        likely = (
+        return np.flatnonzero(
             (np.abs(sides.turn) >= rules.turn)
             & (np.abs(sides.chord_turn) >= rules.turn)
             & (sides.turn * np.sign(sides.chord_turn) >= rules.sudden * np.abs(sides.chord_turn))
             & (sides.miss <= rules.rounding)
             & (sides.roughness <= rules.roughness)
         )
+
+
+def _apart(order: list[int], here: IntArray, count: int, apart: int) -> IntArray:
+    """Return which of the samples `here` (of `count`), best first, are corners, in order around the loop."""
     chosen: list[int] = []
-    for k in sorted(np.flatnonzero(likely).tolist(), key=lambda k: sides.miss[k]):
+    for k in order:
         away = [int(here[k] - here[other]) for other in chosen]
         if all(min(step % count, -step % count) > apart for step in away):
             chosen.append(k)

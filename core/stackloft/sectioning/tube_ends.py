@@ -8,6 +8,8 @@ import numpy as np
 
 from stackloft.geometry.curve_stack import fit_curves
 from stackloft.geometry.end_model import distance_to_end
+from stackloft.geometry.second_moments import central_moments
+from stackloft.geometry.shoelace import polygon_perimeter
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.model.ends import EndKind
@@ -15,7 +17,8 @@ from stackloft.model.errors import InputError
 from stackloft.sectioning.dense_loops import curve_polygon
 from stackloft.sectioning.ends import PlannedEnd
 from stackloft.sectioning.levels import is_hole
-from stackloft.sectioning.roof import Thickness, half_thickness, roof_levels
+from stackloft.sectioning.line_roof import moved
+from stackloft.sectioning.roof import TURNS, Thickness, half_thickness, roof_levels
 from stackloft.sectioning.section_regions import OUTSIDE, section_regions
 from stackloft.sectioning.stack_roofs import OUTER, Side, sees_all
 from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops
@@ -24,6 +27,9 @@ SIDES = 160
 """About how many sides a section's loop has as a polygon."""
 LATE = 2.0
 """Areas that reach zero within this many gaps belong to a round end, later ones to a plane one."""
+SLENDER = 1.25
+"""Perimeter² / (4π area) above which an outline that is all there is closes over its length: that of an
+ellipse of 2.2 : 1. A pole over one of 4 : 1, flat as it is, has half as much area again."""
 FACE = PlannedEnd(EndKind.FACE, 0.0, "closed over its ridge", guessed=False)
 ON_SECTION = PlannedEnd(EndKind.FACE, 0.0, "given: its outermost section is its face", guessed=False)
 
@@ -108,7 +114,7 @@ def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row]
     Where the areas close before that level, or not long after it, there is a pole; otherwise a plane face
     half-way.
     """
-    roofed = _vanishing_ridge(rows, gap, at_last=at_last)
+    roofed = _vanishing_ridge(rows, gap, at_last=at_last) or _vanishing_line(rows, gap, at_last=at_last)
     if roofed is not None:
         return roofed, FACE
     z, areas = _outermost(rows, at_last=at_last)
@@ -121,6 +127,9 @@ def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row]
         return rows, PlannedEnd(EndKind.ROUND, min(root, gap), reason, guessed=False)
     if len(z) == 1:
         return rows, PlannedEnd(EndKind.ROUND, 0.5 * gap, "seen on one section alone", guessed=False)
+    if sum(row.section is not None for row in rows) == 1:
+        # Nothing says that it is blunt; a dome holds as much as a plane face half-way would.
+        return rows, PlannedEnd(EndKind.ROUND, 0.75 * gap, "seen on one section alone", guessed=False)
     row = rows[-1] if at_last else rows[0]
     half = replace_row(row, row.z + (0.5 * gap if at_last else -0.5 * gap))
     face = PlannedEnd(EndKind.FACE, 0.0, "half-way to the section without it", guessed=False)
@@ -146,6 +155,28 @@ def _vanishing_ridge(rows: list[Row], gap: float, *, at_last: bool) -> list[Row]
         beyond.append(
             Row(outermost.z + outward * distance, Loop(loops[0]), outermost.name, None, outermost.hole)
         )
+    return [*rows, *beyond] if at_last else [*reversed(beyond), *rows]
+
+
+def _vanishing_line(rows: list[Row], gap: float, *, at_last: bool) -> list[Row] | None:
+    """Return one slender row with levels that close over its length half-way to the next level.
+
+    None of other rows. A pole over a lying limb's middle would have its skin overshoot; of a limb seen once
+    the square of the width is taken to go straight to zero.
+    """
+    row = rows[0]
+    points = row.loop.points
+    if len(rows) > 1 or polygon_perimeter(points) ** 2 < 4.0 * np.pi * SLENDER * abs(row.loop.signed_area):
+        return None
+    moments, centre = central_moments(points)
+    across = np.linalg.eigh(moments)[1][:, 0]
+    outward = 1.0 if at_last else -1.0
+    beyond = []
+    for part in np.cos(TURNS).tolist():
+        matrix = np.eye(2) - (1.0 - part) * np.outer(across, across)
+        loop = moved(row.loop, matrix, centre - matrix @ centre)
+        z = row.z + outward * 0.5 * gap * (1.0 - part**2)
+        beyond.append(Row(z, loop, row.name, None, row.hole))
     return [*rows, *beyond] if at_last else [*reversed(beyond), *rows]
 
 

@@ -21,6 +21,7 @@ from stackloft.sectioning.levels import Level, covered, is_hole, part_level
 from stackloft.sectioning.line_parting import Parting, parting_levels
 from stackloft.sectioning.loop_links import LinkedLoops, components, link_loops, simpler_links
 from stackloft.sectioning.loop_numbers import Links, by_size, numbered_links
+from stackloft.sectioning.lying_limbs import limbs_cut_off
 from stackloft.sectioning.section_regions import Regions, section_regions
 
 
@@ -80,8 +81,10 @@ class LinkFinder:
 
     def _planned(self, before: Level, after: Level, linked: LinkedLoops) -> list[Linked] | None:
         """Return the links with the steps of a change; None where no steps lead through it."""
-        if linked.plain or not linked.before or not linked.after:
+        if not linked.before or not linked.after:
             return [(linked, None)]
+        if linked.plain:
+            return [(linked, _limbs(before, after, linked))]
         change = self._change(before, after, linked)
         if change is None:
             return None
@@ -148,6 +151,15 @@ class LinkFinder:
             return min(max(own, 0.7 * low), 1.4 * high)
 
         return area
+
+
+def _limbs(before: Level, after: Level, linked: LinkedLoops) -> Change | None:
+    """Return the step by which one section's loop goes on as the next one's once its limbs are cut off."""
+    if before.section is None or after.section is None:
+        return None
+    one, two = part_level(before, linked.before), part_level(after, linked.after)
+    step = limbs_cut_off(one, two)
+    return None if step is None else Change(linked, (one, two), (step,))
 
 
 def _regions(level: Level) -> Regions:

@@ -9,7 +9,7 @@ import numpy as np
 from stackloft.model.arrays import FloatArray
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.ends import End
-from stackloft.sectioning.dense_loops import curve_polygon
+from stackloft.sectioning.dense_loops import even_polygon
 from stackloft.sectioning.ends import StackEnds, plan_ends
 from stackloft.sectioning.levels import Level, is_hole, make_level
 from stackloft.sectioning.line_roof import line_end
@@ -102,9 +102,7 @@ def _levels(contours: ContourStack) -> tuple[list[Level], FloatArray]:
     levels, k = [], 0
     areas = np.zeros(len(contours))
     for number, (section, loops) in enumerate(zip(contours.sections, ready, strict=True)):
-        polygons = [
-            curve_polygon(curves, k + i, float(curves.lengths[k + i]) / SIDES) for i in range(len(loops))
-        ]
+        polygons = [even_polygon(curves, k + i, loop.corners, SIDES) for i, loop in enumerate(loops)]
         own = curves.areas[k : k + len(loops)]
         # From left to right: the order in which loops were given decides no tie.
         kept = np.flatnonzero(own >= SPECK * own.max(initial=0.0))

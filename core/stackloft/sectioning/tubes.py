@@ -19,6 +19,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from stackloft.geometry.bridge_edges import Part
 from stackloft.model.arrays import FloatArray
 from stackloft.model.notices import Notice
 from stackloft.sectioning.level_changes import Joined, Straight, cornered
@@ -169,12 +170,23 @@ def _step(
             tube = builder.begin(part_row(part, joined, row.hole), JointUse(number, part.edges))
             tube.rows.append(row)
             following.append(tube)
+        for part in _ending(step):
+            limb = builder.begin(part_row(part, joined, hole=False), JointUse(number, part.edges))
+            builder.finish(limb, high.z - low.z)
         return following
     for part_number, tube in zip(step.order, tubes, strict=True):
         part = step.cut.parts[part_number]
         tube.rows.append(part_row(part, joined, tube.hole))
         builder.finish(tube, JointUse(number, part.edges))
+    for part in _ending(step):
+        limb = builder.begin(part_row(part, joined, hole=False), high.z - low.z)
+        builder.finish(limb, JointUse(number, part.edges))
     return [
         builder.begin(pinned_row(row, whole), JointUse(number, whole.edges))
         for row, whole in zip(rows, step.cut.wholes, strict=True)
     ]
+
+
+def _ending(step: Joined) -> list[Part]:
+    """Return the parts that no loop of the other level follows: limbs, which end before it."""
+    return [part for k, part in enumerate(step.cut.parts) if k not in step.order]

@@ -16,6 +16,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.lengths import parse_length
 from stackloft.model.lofted_solid import LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
+from stackloft.sectioning.canonical_pose import canonical_flip, flipped_stack
 from stackloft.sectioning.drawn import is_drawn
 from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
@@ -86,6 +87,11 @@ class LoftReconstructor:
                 found=str(len(product)),
                 fix="give the whole stack, not one slice",
             )
+        flip = canonical_flip(product)
+        return self._lofted(flipped_stack(product, flip)).flipped(flip)
+
+    def _lofted(self, product: ContourStack) -> LoftedSolid:
+        """Return the solid of a stack in its canonical pose."""
         if not is_single(product):
             return self._tubes(product)
         sections = equal_points(product, self.points * more_points(product))
