@@ -131,3 +131,24 @@ def test_a_segmentation_without_slices_of_body_is_refused():
     for plugin in (Voxel(), PartialVolume()):
         with pytest.raises(InputError):
             plugin.integrate(empty)
+
+
+def with_skin(brighter, thick):
+    """Return an ellipsoid whose skin is so much brighter than the flesh below it, and as thick, mm."""
+    spacing = (0.5, 0.5, 0.5)
+    flesh = ellipsoid_coverage(np.array(AXES) - thick, np.eye(3), spacing)
+    whole = ellipsoid_coverage(AXES, np.eye(3), spacing)
+    rims = [((a - b) // 2, a - b - (a - b) // 2) for a, b in zip(whole.shape, flesh.shape, strict=True)]
+    return voxel_body(whole + brighter * (whole - np.pad(flesh, rims)), spacing, labels=False)
+
+
+def test_a_skin_that_outshines_the_flesh_is_refused():
+    with pytest.raises(InputError, match="brighter at its edge"):
+        PartialVolume().integrate(with_skin(1.2, 1.5))
+
+
+def test_a_skin_a_little_brighter_costs_its_thickness_times_the_difference():
+    brighter, thick = 0.2, 0.25
+    found = PartialVolume().integrate(with_skin(brighter, thick)).volume
+    skin = EXACT - phantoms.make("ellipsoid", **dict(zip("abc", np.array(AXES) - thick, strict=True))).volume
+    assert found == pytest.approx(EXACT + brighter * skin, rel=2e-3)

@@ -109,6 +109,17 @@ def test_a_void_behind_a_crack_is_closed_and_the_other_body_keeps_its_own():
         assert np.ptp(areas(body.segmentation)) < 0.02 * max(areas(body.segmentation))
 
 
+def test_a_void_whose_crack_is_a_mere_notch_on_the_next_slice_is_closed():
+    volume = np.zeros((8, 40, 40))
+    volume[1:7, 5:35, 5:35] = 100
+    volume[2:4, 10:30, 15:25] = 0
+    volume[4, 5:30, 20] = 0  # one pixel wide, from above the void out to the border
+    volume[5, 5:20, 20] = 0  # less than 20 pixels: the boundary's own notch
+    body = find_objects(scan(volume, fill_voids=True))[0].segmentation
+    assert [notice.code for notice in body.notices] == ["voids-filled"]
+    assert np.ptp(areas(body)) < 0.03 * max(areas(body))
+
+
 def test_nothing_is_an_error():
     with pytest.raises(InputError, match="no body"):
         find_objects(scan(np.zeros((3, 9, 9))))

@@ -23,6 +23,15 @@ def test_smoothing_keeps_the_area_of_small_loops(axes):
     assert drawn_through(smooth) == pytest.approx(exact, abs=max(0.25, 5e-4 * exact))
 
 
+@pytest.mark.parametrize("axes", [(2.4, 3.1), (3.66, 4.68), (5.0, 5.0)])
+def test_small_ovals_stay_as_long_as_they_are(axes):
+    count = round(2 * np.pi * np.mean(axes))
+    t = 2 * np.pi * np.arange(count) / count
+    loop = Loop(np.column_stack([axes[0] * np.cos(t), axes[1] * np.sin(t)]))
+    smooth = smooth_loop(loop, 1.0).points
+    assert np.linalg.norm(smooth / axes, axis=1) == pytest.approx(1.0, abs=0.015)
+
+
 def test_a_slit_ties_no_knot():
     """A banana's outline, 15 pixels across, with a slit of a pixel where another one touches it."""
     t = np.linspace(0.25, 2 * np.pi - 0.25, 42)

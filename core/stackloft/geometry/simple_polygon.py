@@ -10,6 +10,7 @@ BoolArray = NDArray[np.bool_]
 
 AT_ONCE = 16_000
 """Pairs of edges looked at together, so that what is in between stays in the processor's cache."""
+_SHARP, _BACK = 0.6, -0.4  # cosines: where a loop turns by 53° and 114° or more at a vertex
 
 
 def crosses_itself(points: FloatArray) -> BoolArray:
@@ -52,3 +53,24 @@ def _sides(points: FloatArray, edge: FloatArray) -> NDArray[np.int8]:
     above = (area > slack[:, None, None]).view(np.int8)
     side: NDArray[np.int8] = above - (area < -slack[:, None, None]).view(np.int8)
     return side
+
+
+def is_entangled(points: FloatArray) -> bool:
+    """Return whether a smooth loop, (k, 2), crosses itself, or turns back on itself at a vertex.
+
+    A curve that crosses itself by a slip of its fit turns sharply somewhere; only then is it looked for.
+
+    Examples
+    --------
+    >>> t = 2.0 * np.pi * np.arange(15) / 15
+    >>> ring = np.column_stack([np.cos(t), np.sin(t)])
+    >>> is_entangled(ring), is_entangled(np.column_stack([np.cos(t), np.sin(2.0 * t)]))
+    (False, True)
+    """
+    step = np.roll(points, -1, axis=0) - points
+    following = np.roll(step, -1, axis=0)
+    length = np.maximum(
+        np.linalg.norm(step, axis=1) * np.linalg.norm(following, axis=1), np.finfo(float).tiny
+    )
+    sharpest = float(((step * following).sum(axis=1) / length).min())
+    return sharpest < _BACK or (sharpest < _SHARP and bool(crosses_itself(points[None])[0]))

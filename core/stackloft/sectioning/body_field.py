@@ -19,6 +19,9 @@ from stackloft.sectioning.voids import VoidFinder
 MARGIN = 12
 """Pixels kept around a body, for what looks at the background beside it."""
 
+MOSTLY = 0.9
+"""Part of a void's rim that is a body's, when the void is."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyField:
@@ -53,7 +56,8 @@ class BodyField:
         field = part.relative()
         field = np.where(mine, field, -np.abs(field))
         if closed.size:
-            within = touching(placed(closed, closed_corner, window), mine)
+            others = placed((pieces > 0) & ~shown, corner, window)
+            within = enclosed(placed(closed, closed_corner, window), mine, others)
             field = np.where(within, np.maximum(np.abs(field), np.finfo(float).tiny), field)
         return replace(part, values=field + level)
 
@@ -110,11 +114,26 @@ def placed(crop: BoolArray, corner: Corner, window: tuple[slice, slice]) -> Bool
     return placed
 
 
-def touching(voids: BoolArray, mine: BoolArray) -> BoolArray:
-    """Return the voids that this body encloses, among those of all bodies."""
+def enclosed(voids: BoolArray, mine: BoolArray, others: BoolArray) -> BoolArray:
+    """Return the voids that this body encloses, among those of all bodies.
+
+    A gap between bodies that touch is closed in by them together, and is part of none.
+
+    Examples
+    --------
+    >>> void, ring = np.zeros((2, 5, 5), dtype=bool)
+    >>> void[2, 2], ring[1:4, 1:4] = True, True
+    >>> left = ring & (np.arange(5) < 2)
+    >>> bool(enclosed(void, ring & ~void, ring & ~ring).any()), bool(enclosed(void, left, ring & ~left).any())
+    (True, False)
+    """
     _, pieces = cv2.connectedComponents(voids.astype(np.uint8), connectivity=8)
-    beside = cv2.dilate(mine.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    return np.asarray(np.isin(pieces, np.unique(pieces[voids & beside])) & voids)
+    count = int(pieces.max()) + 1
+    beside = cv2.dilate(np.where(voids, pieces, 0).astype(np.float32), np.ones((3, 3))).astype(np.int64)
+    own, foreign = (np.bincount(beside[body & ~voids], minlength=count) for body in (mine, others))
+    whose = own > MOSTLY * (own + foreign)
+    whose[0] = False
+    return np.asarray(whose[pieces] & voids)
 
 
 def _window(box: Box | None, section: SectionField) -> tuple[slice, slice]:

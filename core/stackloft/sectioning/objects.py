@@ -27,7 +27,7 @@ from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Beyond, SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.ahead import worked_ahead
-from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, placed, touching
+from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, enclosed, placed
 from stackloft.sectioning.cut_bodies import cut_apart
 from stackloft.sectioning.kept_slices import Keeper, KeptSlices
 from stackloft.sectioning.linked_pieces import LinkedPieces
@@ -198,7 +198,8 @@ def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
             window = (slice(row, row + closed.shape[0]), slice(column, column + closed.shape[1]))
             pieces, corner = links.pieces(k)
             mine = np.concatenate([[False], own[links.of_slice(k)]])[pieces]
-            total += float(voxel[k]) * float(np.count_nonzero(touching(closed, placed(mine, corner, window))))
+            both = (placed(one, corner, window) for one in (mine, (pieces > 0) & ~mine))
+            total += float(voxel[k]) * float(np.count_nonzero(enclosed(closed, *both)))
     return total
 
 

@@ -32,10 +32,11 @@ _DISC = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK +
 _FEWEST = 20  # pixels of a crack; fewer are the staircase of a slanting boundary
 
 
-def outer_background(body: BoolArray) -> BoolArray:
+def outer_background(body: BoolArray, *, crumbs: bool = True) -> BoolArray:
     """Return the background of a slice that is joined to its border by more than a crack.
 
-    Background opened by a disc (Serra 1982), as far as it reaches the border; crumbs are given back.
+    Background opened by a disc (Serra 1982), as far as it reaches the border; `crumbs`: cracks of less than
+    20 pixels are given back.
 
     Examples
     --------
@@ -53,10 +54,11 @@ def outer_background(body: BoolArray) -> BoolArray:
         2 * CRACK : -2 * CRACK, 2 * CRACK : -2 * CRACK
     ]
     rest, sizes = pieces_of((background > reached), connectivity=8)
-    crumbs = np.concatenate([[False], sizes < _FEWEST])[rest]
+    short = np.concatenate([[False], sizes < _FEWEST])[rest]
     border = np.unique(np.concatenate([rest[0], rest[-1], rest[:, 0], rest[:, -1]]))
     joined = np.isin(rest, border[border > 0])
-    return np.asarray((background > 0) & ((reached > 0) | (crumbs & _beside(reached, rest)) | joined))
+    given_back = short & _beside(reached, rest) if crumbs else np.zeros_like(short)
+    return np.asarray((background > 0) & ((reached > 0) | given_back | joined))
 
 
 def _beside(reached: cv2.typing.MatLike, rest: NDArray[np.int32]) -> BoolArray:
@@ -128,13 +130,16 @@ class _Slice:
     corner: Corner
 
     def numbered(self, window: tuple[int, int, int, int]) -> Pieces:
-        """Return 1 for the outer background, 2 … for what is closed in, 0 for body, on a wider window."""
+        """Return 1 for the outer background, 2 … for what is closed in, 0 for body, on a wider window.
+
+        Short cracks lead nowhere, as long ones do not: behind one on the next slice no void lies open.
+        """
         top, left, bottom, right = window
         numbers = np.ones((bottom - top, right - left), dtype=np.int32)
         rows, columns = self.body.shape
         row, column = self.corner[0] - top, self.corner[1] - left
         part = numbers[row : row + rows, column : column + columns]
-        part[self.body] = 0
+        np.copyto(part, outer_background(self.body, crumbs=False))
         if self.closed is not None:
             np.copyto(part, self.closed + 1, where=self.closed > 0)
         return numbers

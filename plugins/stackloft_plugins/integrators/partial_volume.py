@@ -37,6 +37,8 @@ _FEW = 4
 """Likewise of the innermost pixels of a thin body."""
 _BEYOND, _EDGE, _WITHIN = 1, 2, 3
 """Zones around the boundary, by how many of the outer ring, the edge zone and the inside hold a pixel."""
+MOST_EXCESS = 0.02
+"""Part of the volume by which an edge zone's pixels may be more than full: a skin so bright is no edge."""
 _OUTLIER = 6.0
 """Robust standard deviations: what is further from the background's median does not count in its mean."""
 
@@ -49,7 +51,8 @@ class PartialVolume:
     blur keeps within ``zone`` pixels of the edge; the two levels are those of rings on either side of that
     zone, per slice for photographs, over all slices for scans. No threshold enters, so that slabs that are
     filled to less than a half count too, those beyond the outermost contours among them. Errs with a skin of
-    another grey than the flesh below it: by its thickness times the relative difference. Gives no area.
+    another grey than the flesh below it: by its thickness times the relative difference; refuses one so much
+    brighter that pixels inside would be more than full by 2 % of the volume. Gives no area.
     Across photographs (faces) it errs as Cavalieri's rule does. Of a label map it is the sum of voxels.
     """
 
@@ -69,7 +72,7 @@ class PartialVolume:
         Raises
         ------
         InputError
-            No body; a body so thin that no pixel lies wholly inside.
+            No body; a body so thin that no pixel lies wholly inside; one whose skin is far brighter.
         """
         return streamed(product, self, Integral)
 
@@ -84,6 +87,10 @@ class _SliceSums:
     """px in the edge zone"""
     grey: float
     """Sum of the edge zone's field."""
+    full: int
+    """px of the edge zone inside the body, on the slices before and after too: at most filled"""
+    full_grey: float
+    """Sum of their field."""
     body: float
     """Field of the ring inside; NaN when there is none."""
     background: float
@@ -150,17 +157,32 @@ class _CoverageSink:
         levels = (
             np.broadcast_to(whole, levels.shape) if self._slab else np.where(np.isnan(levels), whole, levels)
         )
-        covered = [
-            one.inside + (one.grey - one.edge * background) / (body - background)
-            for one, (background, body) in zip(self._sums, levels, strict=True)
-        ]
-        return np.array(covered)
+        inside, edge, grey, full, full_grey = np.array(
+            [(x.inside, x.edge, x.grey, x.full, x.full_grey) for x in self._sums]
+        ).T
+        background, step = levels[:, 0], levels[:, 1] - levels[:, 0]
+        covered = inside + (grey - edge * background) / step
+        _check_edge((full_grey - full * background) / step, full, float(covered.sum()))
+        return np.asarray(covered)
 
 
 def _counted(current: SeenSlice) -> _SliceSums:
     """Return what one slice of a label map adds: its voxels."""
     nan = float("nan")
-    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, nan, nan, nan)
+    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, 0, 0.0, nan, nan, nan)
+
+
+def _check_edge(filled: FloatArray, pixels: FloatArray, volume: float) -> None:
+    """Raise when pixels of the edge zone would be more than full: the volume is too high by that at least."""
+    excess = float((filled - pixels).sum())
+    if excess > MOST_EXCESS * volume:
+        raise InputError(
+            "the body is brighter at its edge than inside: grey is no measure of how full a pixel is",
+            where="partial-volume",
+            found=f"{filled.sum() / pixels.sum():.2f} of the inner grey level in the edge zone, "
+            f"which makes the volume at least {100.0 * excess / volume:.0f} % too high",
+            fix="use --method voxel, cavalieri or loft",
+        )
 
 
 def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int) -> _SliceSums:
@@ -176,11 +198,14 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
     zones = (inside + near + wide).ravel()[where]
     grey = current.relative(where)
     edge, body = grey[zones == _EDGE], _level(grey[zones == _WITHIN])
+    full = grey[(zones == _EDGE) & common.ravel()[where].view(np.bool_)]
     background = _mean_level(grey[zones == _BEYOND])
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
         grey=float(edge.sum()),
+        full=len(full),
+        full_grey=float(full.sum()),
         body=body,
         background=background,
         near=_innermost(current, common) if np.isnan(body) else body,
