@@ -27,6 +27,8 @@ STEEP = 8.0
 loop: sections a hair apart have their corners at the same places."""
 SAMPLES = 128
 """Samples of a loop when phases are compared."""
+ASIDE = 1e-7
+"""Fraction of a loop on either side of a sample at which a corner's two directions are taken."""
 MOST_SOLVED = 128
 """Correspondence is solved for at most this many points; more are placed between."""
 
@@ -143,13 +145,30 @@ def _solve_seams(curves: CurveStack, loops: list[Loop], contours: ContourStack) 
     samples = np.arange(SAMPLES) / SAMPLES
     point, tangent = curves.at(section[:, None], samples[None, :])
     places = [_corner_places(curves, k, loop.corners) for k, loop in enumerate(loops)]
-    seams = solve_phases(point - curves.centroids[:, None, :], tangent, places)
+    seams = solve_phases(point - curves.centroids[:, None, :], _directions(curves, tangent, places), places)
     largest = int(np.argmax(np.round(curves.areas, 9)))
     phases = seams.phases - seams.phases[largest]
     corners = [np.sort(np.mod(p - phase, 1.0)) for p, phase in zip(places, phases, strict=True)]
     names = [s.name for s in contours.sections]
     notices = tuple(_tie_notice(names[k], names[k + 1]) for k in seams.tied)
     return _Seams(phases, corners, spread_by_turning(tangent, places), notices)
+
+
+def _directions(curves: CurveStack, tangents: FloatArray, places: list[FloatArray]) -> FloatArray:
+    """Return the samples' tangents, at a corner the mean of both its sides': rounding must not choose one."""
+    section, sample = (
+        np.concatenate(part)
+        for part in zip(
+            *((np.full(len(own), k), np.round(own * SAMPLES).astype(int)) for k, own in enumerate(places)),
+            strict=True,
+        )
+    )
+    sides = [curves.at(section, sample / SAMPLES + aside)[1] for aside in (-ASIDE, ASIDE)]
+    mean = np.add(*(side / np.linalg.norm(side, axis=1, keepdims=True) for side in sides))
+    turned = np.linalg.norm(mean, axis=1) > ASIDE  # not at a cusp
+    result = tangents.copy()
+    result[section[turned], sample[turned] % SAMPLES] = mean[turned]
+    return result
 
 
 def _tie_notice(before: str, after: str) -> Notice:
