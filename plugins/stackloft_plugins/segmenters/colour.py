@@ -234,7 +234,7 @@ def _along(colours: Grey, mask: Mask, shades_of: Grey | None) -> tuple[Grey | No
 def _deep_within(grey: Grey, body: Mask) -> Grey:
     """Return the grey levels with no pixel deep within the body below its edge's own."""
     deep = cv2.erode(body, np.ones((2 * _DEEP + 1, 2 * _DEEP + 1), np.uint8)) > 0
-    return np.where(deep, np.maximum(grey, np.float32(np.median(grey[inside_band(body)]))), grey)
+    return np.where(deep, np.maximum(grey, np.float32(np.median(grey.ravel()[inside_band(body)]))), grey)
 
 
 def _no_body(name: str, found: str) -> InputError:
