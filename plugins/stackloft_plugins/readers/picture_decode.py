@@ -16,6 +16,7 @@ from PIL import Image, UnidentifiedImageError
 
 from stackloft.model.errors import InputError
 from stackloft_plugins.readers.picture_kinds import READABLE
+from stackloft_plugins.readers.picture_pixels import pixels_of
 from stackloft_plugins.readers.picture_tags import PictureTags, read_tags
 
 MAX_PIXELS = 500_000_000
@@ -26,9 +27,6 @@ MIN_SIDE = 3
 
 _PILLOW_LIMIT = 80_000_000  # below the size at which Pillow itself warns
 
-
-_AT_ONCE = 500_000
-"""Pixels taken over at once, few enough to stay in the processor's cache."""
 
 _DAMAGE = (OSError, SyntaxError, ValueError, TypeError, IndexError, KeyError, EOFError, MemoryError)
 """What Pillow raises on damaged files."""
@@ -151,7 +149,7 @@ def _decoded(
             if prepare is not None:
                 prepare(image)  # does something to JPEG alone
             image.load()
-            pixels = _pixels(image, paper)
+            pixels = pixels_of(image, paper)
         except _DAMAGE as error:
             raise _damaged(header.path, error) from error
     return np.ascontiguousarray(_UPRIGHT[header.orientation](pixels)) if header.orientation != 1 else pixels
@@ -215,40 +213,6 @@ def _check_pages(image: Image.Image, path: Path) -> None:
             expected="one picture per file",
             fix=f"split it: magick {path.name} slice_%03d.png",
         )
-
-
-def _pixels(image: Image.Image, paper: int) -> NDArray[Any]:
-    if image.mode in {"F", "I"} or image.mode.startswith("I;16"):
-        deep = np.asarray(image)
-        return deep.astype(deep.dtype.newbyteorder("="))
-    if image.has_transparency_data:
-        return _composited(image, paper)
-    return _unpacked(
-        image if image.mode in {"L", "RGB"} else image.convert("L" if image.mode == "1" else "RGB")
-    )
-
-
-def _unpacked(image: Image.Image) -> NDArray[np.uint8]:
-    """Return the pixels of an 8-bit picture, taken over row by row: Pillow's own way copies them thrice."""
-    columns, rows = image.size
-    pixels = np.empty((rows, columns, 3) if image.mode == "RGB" else (rows, columns), np.uint8)
-    step = max(1, _AT_ONCE // columns)
-    for top in range(0, rows, step):
-        bottom = min(top + step, rows)
-        pixels[top:bottom] = np.asarray(image.crop((0, top, columns, bottom)))
-    return pixels
-
-
-def _composited(image: Image.Image, paper: int) -> NDArray[Any]:
-    """Lay what is transparent on paper; opaque pictures lose nothing."""
-    layered = image.convert("LA" if image.mode in {"LA", "La"} else "RGBA")
-    values = np.asarray(layered)
-    colour, alpha = values[..., :-1], values[..., -1:]
-    if (alpha == 255).all():
-        return np.ascontiguousarray(colour[..., 0] if colour.shape[-1] == 1 else colour)
-    weight = alpha.astype(np.float32) / 255
-    laid = np.rint(colour * weight + paper * (1 - weight)).astype(np.uint8)
-    return np.ascontiguousarray(laid[..., 0] if laid.shape[-1] == 1 else laid)
 
 
 def _damaged(path: Path, error: BaseException) -> InputError:
