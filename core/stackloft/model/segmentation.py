@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray, FloatArray
+from stackloft.geometry.noise_floor import NoiseFloor
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
 
@@ -34,6 +35,8 @@ class SectionField:
     """(k, 2) column, row in the slice: the body's border pixels in order around it, from the leftmost of its
     first row, where somebody has found that the body is one piece without a hole and nowhere held together by
     corners alone. None: not known."""
+    noise: NoiseFloor | None = None
+    """What noise still adds to empty pixels of `values`, far below the level; None: nothing."""
 
     def above(self) -> BoolArray:
         """Return where the body is, (rows, columns).
@@ -51,7 +54,21 @@ class SectionField:
     def relative(self) -> FloatArray:
         """Return the field above its level, float64: zero on the boundary."""
         level = self.level if self.local_levels is None else self.local_levels
-        return np.asarray(np.subtract(self.values, level, dtype=np.float64))
+        values = self.values if self.noise is None else self.noise.taken_off(self.values)
+        return np.asarray(np.subtract(values, level, dtype=np.float64))
+
+    def relative_at(self, where: IntArray) -> FloatArray:
+        """Return the same at the pixels with these numbers, row after row.
+
+        Examples
+        --------
+        >>> SectionField(np.array([[2, 3]], dtype=np.int16), 2.5).relative_at(np.array([1])).tolist()
+        [0.5]
+        """
+        values = self.values.ravel()[where]
+        level = self.level if self.local_levels is None else self.local_levels.ravel()[where]
+        grey = values.astype(np.float64) if self.noise is None else self.noise.taken_off(values)
+        return np.asarray(np.subtract(grey, level, out=grey))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

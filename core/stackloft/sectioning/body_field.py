@@ -55,7 +55,7 @@ class BodyField:
         if closed.size:
             within = touching(placed(closed, closed_corner, window), mine)
             field = np.where(within, np.maximum(np.abs(field), np.finfo(float).tiny), field)
-        return replace(part, values=field + level)
+        return replace(part, values=field + level, noise=None)
 
     def shows(self, index: int) -> bool:
         """Return whether the body is on slice `index` of the whole scan."""

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.sectioning.marching_squares import Crossings
 
@@ -48,6 +49,8 @@ class LevelLine:
     field: NDArray[Any]
     """(rows, columns), of any real dtype"""
     level: float
+    noise: NoiseFloor | None = None
+    """What noise still adds to empty pixels of the field."""
 
 
 def crossing_points(line: Crossings, field: NDArray[Any], level: float = 0.0) -> FloatArray:
@@ -113,7 +116,8 @@ def _around(line: LevelLine) -> FloatArray:
     base = line.crossings.row * width + line.crossings.column
     at = offsets.take(line.crossings.down.view(np.int8), axis=1)
     at += base
-    return line.field.ravel().take(at).astype(np.float64)
+    values = line.field.ravel().take(at)
+    return values.astype(np.float64) if line.noise is None else line.noise.taken_off(values)
 
 
 def _refine(fraction: FloatArray, samples: FloatArray, fine: NDArray[np.bool_], starts: IntArray) -> None:

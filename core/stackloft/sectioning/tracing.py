@@ -90,7 +90,7 @@ def trace_fields(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[Trac
     sorted_out = [sorted_lines(one, rules) for one in slices]
     lines = [(line, one) for one in sorted_out for line in (*one.kept, *one.real, *one.perhaps)]
     points = points_of_lines(
-        [LevelLine(line.crossings, one.grid.field, one.grid.level) for line, one in lines]
+        [LevelLine(line.crossings, one.grid.field, one.grid.level, one.grid.noise) for line, one in lines]
     )
     loops = iter(_loops(points, lines))
     return [_traced(one, loops, rules) for one in sorted_out]

@@ -174,7 +174,7 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
     wide = cv2.dilate(near, _disc(_RING))
     where = np.flatnonzero((wide > deep).view(np.bool_))  # around the boundary alone
     zones = (inside + near + wide).ravel()[where]
-    grey = current.relative(where)
+    grey = current.section.relative_at(where)
     edge, body = grey[zones == _EDGE], _level(grey[zones == _WITHIN])
     background = _mean_level(grey[zones == _BEYOND])
     return _SliceSums(
@@ -189,7 +189,7 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
 
 def _innermost(current: SeenSlice, common: Mask) -> float:
     """Return the level of a thin body's innermost pixels."""
-    return _level(current.relative(np.flatnonzero(_eroded(common, 1))), _FEW)
+    return _level(current.section.relative_at(np.flatnonzero(_eroded(common, 1))), _FEW)
 
 
 def _eroded(mask: Mask, depth: int) -> Mask:

@@ -15,14 +15,14 @@ Where noise lifts the background (`geometry.noise_floor`), the level is half-way
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, noise_floor
+from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, NoiseFloor, noise_floor
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
@@ -45,10 +45,8 @@ class SlabLevel:
 
     level: float
     body_above: bool
-    noise_floor: float = 0.0
-    """Grey levels by which noise lifts the background above no signal."""
-    no_signal: float = 0.0
-    """Grey level without it."""
+    noise: NoiseFloor | None = None
+    """What noise adds to empty pixels, where it does."""
     notices: tuple[Notice, ...] = ()
 
 
@@ -121,10 +119,11 @@ def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) ->
     dark = air - floor * MEDIAN / MEAN
     if not above or level - dark < 2.0 * EMPTY * floor:
         floor = 0.0
+    found = SlabLevel(level, above, NoiseFloor.over(dark, floor))
     if step > _FAINT * noise:
-        return SlabLevel(level, above, floor, dark)
+        return found
     text = f"{where}: body and background differ by {step:.3g} grey levels, noise {noise:.2g}; look there"
-    return SlabLevel(level, above, floor, dark, (Notice("low-contrast", text),))
+    return replace(found, notices=(Notice("low-contrast", text),))
 
 
 def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]:
