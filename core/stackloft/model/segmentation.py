@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.geometry.noise_floor import NoiseFloor
-from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
 
@@ -57,18 +57,23 @@ class SectionField:
         values = self.values if self.noise is None else self.noise.taken_off(self.values)
         return np.asarray(np.subtract(values, level, dtype=np.float64))
 
-    def relative_at(self, where: IntArray) -> FloatArray:
-        """Return the same at the pixels with these numbers, row after row.
+    def relative_where(self, mask: BoolArray) -> FloatArray:
+        """Return the same at the True pixels of a mask, (n), row after row.
 
         Examples
         --------
-        >>> SectionField(np.array([[2, 3]], dtype=np.int16), 2.5).relative_at(np.array([1])).tolist()
+        >>> SectionField(np.array([[2, 3]], dtype=np.int16), 2.5).relative_where(np.array([[False, True]])).tolist()
         [0.5]
         """
-        values = self.values.ravel()[where]
-        level = self.level if self.local_levels is None else self.local_levels.ravel()[where]
+        values = self.values[mask]
+        level = self.level if self.local_levels is None else self.local_levels[mask]
         grey = values.astype(np.float64) if self.noise is None else self.noise.taken_off(values)
         return np.asarray(np.subtract(grey, level, out=grey))
+
+    def every(self, step: int) -> SectionField:
+        """Return every `step`-th pixel of every `step`-th row, its place and outline being that of no crop."""
+        local = None if self.local_levels is None else self.local_levels[::step, ::step]
+        return replace(self, values=self.values[::step, ::step], local_levels=local, outline=None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
