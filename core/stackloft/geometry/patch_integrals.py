@@ -62,10 +62,11 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
 
 @lru_cache
 def _surface_rule(degree: int) -> tuple[FloatArray, FloatArray]:
-    """Return what makes P, P_u and P_v at g² Gauss points of 16 control points, (3·g², 16), and weights (g²)."""
+    """Return what makes P, P_u, P_v at g² Gauss points of control points, (3·g², 16), and weights (g²)."""
     x, w = gauss_unit(degree)
     value, slope = bernstein(x), bernstein_slope(x)
-    return np.concatenate([np.kron(value, value), np.kron(value, slope), np.kron(slope, value)]), np.kron(w, w)
+    parts = [np.kron(value, value), np.kron(value, slope), np.kron(slope, value)]
+    return np.asarray(np.concatenate(parts)), np.asarray(np.kron(w, w))
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ splines with variable knots).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,14 @@ class Spread:
         return np.asarray(whole + np.interp(t - whole, self.shares[section], self._grid()))
 
     def _grid(self) -> FloatArray:
-        return np.linspace(0.0, 1.0, self.shares.shape[1])
+        return _even(self.shares.shape[1])
+
+
+@lru_cache
+def _even(count: int) -> FloatArray:
+    grid = np.linspace(0.0, 1.0, count)
+    grid.setflags(write=False)
+    return grid
 
 
 def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread:

@@ -62,7 +62,8 @@ class SectionField:
 
         Examples
         --------
-        >>> SectionField(np.array([[2, 3]], dtype=np.int16), 2.5).relative_where(np.array([[False, True]])).tolist()
+        >>> section = SectionField(np.array([[2, 3]], dtype=np.int16), 2.5)
+        >>> section.relative_where(np.array([[False, True]])).tolist()
         [0.5]
         """
         values = self.values[mask]
@@ -71,7 +72,7 @@ class SectionField:
         return np.asarray(np.subtract(grey, level, out=grey))
 
     def every(self, step: int) -> SectionField:
-        """Return every `step`-th pixel of every `step`-th row, its place and outline being that of no crop."""
+        """Return every `step`-th pixel of every `step`-th row, for its grey levels; it is at no place."""
         local = None if self.local_levels is None else self.local_levels[::step, ::step]
         return replace(self, values=self.values[::step, ::step], local_levels=local, outline=None)
 
@@ -96,7 +97,8 @@ class Segmentation:
 
     stack: SliceStack
     field_of: Callable[[int, Picture], SectionField]
-    """(slice number, decoded picture) to the slice's field; safe to call from several threads."""
+    """(slice number, decoded picture) to the slice's field; safe to call from several threads. One with a
+    true attribute `pointwise` looks at every pixel alone: of a part of a picture it makes that part of it."""
     binary: bool = False
     """True for label maps: no grey levels, so contours are stair-stepped and say so."""
     notices: tuple[Notice, ...] = ()
@@ -112,6 +114,19 @@ class Segmentation:
     """Slices before the first one that the body may reach into, in order."""
     after: tuple[Beyond, ...] = ()
     """Slices after the last one that the body may reach into, in order."""
+    known_of: Callable[[int], Picture] | None = None
+    """The `decode` of whose pictures `field_of` knows enough: as long as it is the stack's own, empty
+    pictures do where nobody looks at them."""
+
+    @property
+    def pointwise(self) -> bool:
+        """Whether the field of a part of a picture is that part of its field, but for the offset."""
+        return bool(getattr(self.field_of, "pointwise", False))
+
+    @property
+    def knows_its_pictures(self) -> bool:
+        """Whether `field_of` takes empty pictures."""
+        return self.known_of is not None and self.known_of is self.stack.decode
 
     def __len__(self) -> int:
         return len(self.stack)

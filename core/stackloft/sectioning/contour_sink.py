@@ -30,6 +30,7 @@ HELD = 4_000_000
 """Bytes: slices whose fields take more are traced without waiting for others."""
 LARGE = 4_000_000
 """Pixels: of larger pictures no more are worked on than there are threads."""
+_NO_PICTURE: Picture = np.zeros((0, 0), np.uint8)
 _NAMED = 3  # slices named in a notice that stands for several
 
 
@@ -180,11 +181,12 @@ def decoded_ahead(
     Two threads work ahead (`worked_ahead`), less far where pictures are large. Where nobody looks at the
     `pictures`, an empty one is given and nothing of them stays in memory.
     """
+    blind = not pictures and segmentation.knows_its_pictures
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
-        picture = segmentation.stack.decode(index)
+        picture = _NO_PICTURE if blind else segmentation.stack.decode(index)
         section = segmentation.field_of(index, picture)
-        return index, picture if pictures else np.zeros((0, 0), picture.dtype), section
+        return index, picture if pictures else _NO_PICTURE, section
 
     rows, columns = segmentation.stack.shape
     yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else THREADS)

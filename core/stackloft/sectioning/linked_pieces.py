@@ -44,6 +44,20 @@ class _Runs:
         return np.repeat(self.numbers, np.diff(self.starts, append=size)).reshape(self.shape)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outlined:
+    """A slice's one piece without a hole, as its outline."""
+
+    outline: NDArray[np.int32]
+    shape: tuple[int, int]
+    corner: Corner
+
+    def pieces(self) -> Pieces:
+        canvas = np.zeros(self.shape, np.uint8)
+        cv2.drawContours(canvas, [self.outline - np.array(self.corner[::-1], np.int32)], -1, 1, cv2.FILLED)
+        return canvas
+
+
 class LinkedPieces:
     """Takes one slice's pieces after the other; at the end says which of them are one object.
 
@@ -68,7 +82,7 @@ class LinkedPieces:
         self._starts: list[int] = []
         self._sizes: list[FloatArray] = []
         self._labels: list[IntArray] = []
-        self._runs: list[_Runs] = []
+        self._runs: list[_Runs | _Outlined] = []
         self._last: tuple[Pieces, Corner] | None = None
 
     def add(
@@ -78,11 +92,13 @@ class LinkedPieces:
         labels: IntArray | None = None,
         corner: Corner = (0, 0),
         before: tuple[Pieces, Corner] | None = None,
+        outline: NDArray[np.int32] | None = None,
     ) -> None:
         """Take a slice's pieces, numbered 1 … n, the size of each and its label; only equal labels link.
 
         The pieces may be a crop of the slice whose first pixel lies at `corner`; `before` is another crop
-        of the slice before, where the one that was given then was too narrow.
+        of the slice before, where the one that was given then was too narrow. An `outline`, as a
+        `SectionField` has it, says that there is one piece without a hole.
         """
         if before is not None:
             self._last = before
@@ -97,7 +113,8 @@ class LinkedPieces:
                 if self._labels[-2][a - 1] == self._labels[-1][b - 1]:
                     self._join(earlier + a - 1, start + b - 1)
         self._last = (pieces, corner)
-        self._runs.append(_Runs.of(pieces, corner))
+        shape = (pieces.shape[0], pieces.shape[1])
+        self._runs.append(_Runs.of(pieces, corner) if outline is None else _Outlined(outline, shape, corner))
 
     def __len__(self) -> int:
         return len(self._runs)
@@ -158,11 +175,12 @@ def overlaps(a: Pieces, b: Pieces) -> tuple[IntArray, IntArray]:
     >>> pairs.tolist(), shared.tolist()
     ([[1, 3], [2, 3]], [1, 1])
     """
-    both = (a > 0) & (b > 0)
+    alone = a.dtype == b.dtype == np.uint8 and a.max(initial=0) <= 1 and b.max(initial=0) <= 1
+    both = (a & b).view(np.bool_) if alone else (a > 0) & (b > 0)
     shared = int(np.count_nonzero(both))
     if not shared:
         return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    if a.dtype == b.dtype == np.uint8 and a.max() == b.max() == 1:  # two slices of one piece each
+    if alone:  # two slices of one piece each
         return np.ones((1, 2), dtype=np.int64), np.array([shared])
     first, second = a[both].astype(np.int64), b[both].astype(np.int64)
     width = int(second.max()) + 1
@@ -206,16 +224,16 @@ def body_pieces(body: BoolArray) -> BodyPieces:
     >>> found.pieces.shape, found.sizes.tolist(), found.corner, len(found.outline)
     ((2, 5), [10], (2, 3), 10)
     """
-    left, top, width, height = cv2.boundingRect(body.view(np.uint8))
-    crop = body[top : top + height, left : left + width]
-    bits = np.ascontiguousarray(crop).view(np.uint8)
-    if not bits.size:
-        return BodyPieces(bits, np.zeros(0, dtype=np.int64), (top, left))
+    bits = np.ascontiguousarray(body).view(np.uint8)
     chains = single_piece(bits)
+    left, top, width, height = cv2.boundingRect(chains[0] if chains else bits)
+    crop = bits[top : top + height, left : left + width]
+    if not crop.size:
+        return BodyPieces(crop, np.zeros(0, dtype=np.int64), (top, left))
     if not chains:
-        return BodyPieces(*pieces_of(crop), (top, left))
-    outline = chains[0] + np.array([left, top], np.int32) if len(chains) == 1 else None
-    return BodyPieces(bits, np.array([np.count_nonzero(bits)]), (top, left), outline)
+        return BodyPieces(*pieces_of(crop.view(np.bool_)), (top, left))
+    outline = chains[0] if len(chains) == 1 else None
+    return BodyPieces(np.ascontiguousarray(crop), np.array([cv2.countNonZero(crop)]), (top, left), outline)
 
 
 def single_piece(bits: NDArray[np.uint8]) -> list[NDArray[np.int32]]:
@@ -229,7 +247,8 @@ def single_piece(bits: NDArray[np.uint8]) -> list[NDArray[np.int32]]:
     outlines, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     if tree is None or np.count_nonzero(tree[0, :, 3] < 0) != 1:
         return []
-    chains = [np.asarray(outlines[k][:, 0], np.int32) for k in np.argsort(tree[0, :, 3] >= 0, kind="stable")]
+    order = np.argsort(tree[0, :, 3] >= 0, kind="stable") if len(outlines) > 1 else (0,)
+    chains = [np.asarray(outlines[k][:, 0], np.int32) for k in order]
     return [] if any(pinched(bits, chain) for chain in chains) else chains
 
 

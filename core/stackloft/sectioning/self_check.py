@@ -74,7 +74,10 @@ def _half_lattices_apart(z: FloatArray, areas: FloatArray) -> float:
 def _worst_interval(between: FloatArray, z: FloatArray, areas: FloatArray) -> int:
     """Return the interval in which loft and areas differ most."""
     lofted = np.array(
-        [solid_integrals(between[k : k + 1], (1.0, 1.0), np.eye(4), degree=DEGREE)[0] for k in range(len(z) - 1)]
+        [
+            solid_integrals(between[k : k + 1], (1.0, 1.0), np.eye(4), degree=DEGREE)[0]
+            for k in range(len(z) - 1)
+        ]
     )
     straight = 0.5 * (areas[:-1] + areas[1:]) * np.diff(z)
     return int(np.argmax(np.abs(lofted - straight)))

@@ -116,10 +116,15 @@ def _left_out(share: float, name: str) -> Notice:
 
 def _sides(line: Line, grid: Grid, shape: tuple[int, int]) -> list[str]:
     """Return the picture's edges that a line runs along: it is closed between them and the last pixels."""
-    at = line.rough + np.array(grid.first[::-1])
-    (left, top), (right, bottom) = at.min(axis=0), at.max(axis=0)
+    x, y = line.rough[:, 0], line.rough[:, 1]
+    row, column = grid.first
     rows, columns = shape
-    found = {"top": top < 0, "bottom": bottom > rows - 1, "left": left < 0, "right": right > columns - 1}
+    found = {
+        "top": y.min() + row < 0,
+        "bottom": y.max() + row > rows - 1,
+        "left": x.min() + column < 0,
+        "right": x.max() + column > columns - 1,
+    }
     return [side for side in SIDES if found[side]]
 
 

@@ -99,12 +99,16 @@ def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
 
     The disc's closing of the body is the complement of the background's opening.
     """
-    if bits[0].any() or bits[-1].any() or bits[:, 0].any() or bits[:, -1].any():
+    if any(edge.any() for edge in _strips(bits, 1)):
         return False
     if not solid and _has_holes(np.ascontiguousarray(bits)):
         return False
-    around = (2 * CRACK,) * 4
-    framed = cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0)
+    framed = bits
+    if any(edge.any() for edge in _strips(bits, 2 * CRACK)):
+        around = (2 * CRACK,) * 4
+        framed = np.asarray(
+            cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0), np.uint8
+        )
     wide = cv2.dilate(framed, _DISC)
     if _has_holes(wide):
         return False
@@ -112,6 +116,11 @@ def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
     if cv2.countNonZero(cracks) < _FEWEST:
         return True
     return bool(pieces_of(cracks > 0, connectivity=8)[1].max() < _FEWEST)
+
+
+def _strips(bits: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], ...]:
+    """Return the outermost rows and columns."""
+    return bits[:width], bits[-width:], bits[:, :width], bits[:, -width:]
 
 
 def _has_holes(bits: cv2.typing.MatLike) -> bool:

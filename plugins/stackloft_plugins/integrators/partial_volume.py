@@ -19,6 +19,7 @@ import numpy as np
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
+from stackloft.geometry.median import median
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
@@ -94,6 +95,8 @@ class _SliceSums:
 class _CoverageSink:
     """Sums each slice when the one after it is there."""
 
+    looks_at_pictures = False
+
     def __init__(self, zone: int) -> None:
         self._zone = zone
 
@@ -168,9 +171,9 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside, near = _eroded(common, _disc(zone)), cv2.dilate(united, _disc(zone))
+    inside, near = _eroded(common, _disc(zone)), _dilated(united, _disc(zone))
     edge = current.section.relative_where((inside ^ near).view(np.bool_))
-    body, background = _ring_levels(current.section, inside, np.asarray(near, np.uint8))
+    body, background = _ring_levels(current.section, inside, near)
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
@@ -182,13 +185,13 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
 
 
 def _ring_levels(section: SectionField, inside: Mask, near: Mask) -> tuple[float, float]:
-    """Return the levels of the rings on either side of the edge zone; of large ones every fourth pixel is seen."""
+    """Return the levels of the rings beside the edge zone; of large ones every fourth pixel is seen."""
     step = 2 if inside.size > _LARGE else 1
     seen = section.every(step) if step > 1 else section
     inside, near = (np.ascontiguousarray(mask[::step, ::step]) for mask in (inside, near))
     ring = np.ones((2 * (_RING // step) + 1,) * 2, np.uint8)
     within = (inside ^ _eroded(inside, ring)).view(np.bool_)
-    beyond = (near ^ cv2.dilate(near, ring)).view(np.bool_)
+    beyond = (near ^ _dilated(near, ring)).view(np.bool_)
     return _level(seen.relative_where(within)), _mean_level(seen.relative_where(beyond))
 
 
@@ -201,23 +204,20 @@ def _eroded(mask: Mask, by: Mask) -> Mask:
     return np.asarray(cv2.erode(mask, by, borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
 
 
+def _dilated(mask: Mask, by: Mask) -> Mask:
+    return np.asarray(cv2.dilate(mask, by), np.uint8)
+
+
 def _mean_level(values: FloatArray) -> float:
     """Return the mean without outliers: it is a sum that it is taken off from, and noise may be skewed."""
     if len(values) < _ENOUGH:
         return float("nan")
-    off = np.abs(values - _middle(values))
-    return float(values[off <= _OUTLIER * 1.4826 * _middle(off)].mean())
+    off = np.abs(values - median(values))
+    return float(values[off <= _OUTLIER * 1.4826 * median(off)].mean())
 
 
 def _level(values: FloatArray, enough: int = _ENOUGH) -> float:
-    return _middle(values) if len(values) >= enough else float("nan")
-
-
-def _middle(values: FloatArray) -> float:
-    """Return the median; a fifth of `numpy.median`'s time where values are few."""
-    low, high = (len(values) - 1) // 2, len(values) // 2
-    ordered = np.partition(values, high if low == high else (low, high))
-    return 0.5 * float(ordered[low] + ordered[high])
+    return median(values) if len(values) >= enough else float("nan")
 
 
 @lru_cache

@@ -155,6 +155,11 @@ class _Masked:
     stack: SliceStack
     field: _Level | _Window
 
+    @property
+    def pointwise(self) -> bool:
+        """True where nobody has drawn a mask, which is of whole slices."""
+        return not any("mask" in said for said in self.stack.hints.slices.values())
+
     def __call__(self, number: int, picture: Picture) -> SectionField:
         said: Mapping[str, Any] = self.stack.hints.slices.get(number + 1, {})
         if "mask" in said:
