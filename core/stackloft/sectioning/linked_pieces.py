@@ -24,6 +24,9 @@ Corner = tuple[int, int]
 """(row, column) of a crop's first pixel in the slice."""
 
 
+_NO_STARTS: NDArray[np.int32] = np.zeros(0, np.int32)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Runs:
     """A slice's pieces as runs of equal numbers."""
@@ -35,6 +38,8 @@ class _Runs:
 
     @staticmethod
     def of(pieces: Pieces, corner: Corner) -> _Runs:
+        if not pieces.size:
+            return _Runs(_NO_STARTS, pieces.ravel(), (pieces.shape[0], pieces.shape[1]), corner)
         flat = pieces.ravel()
         starts = np.concatenate([[0], np.flatnonzero(flat[1:] != flat[:-1]) + 1])[: flat.size]
         return _Runs(starts.astype(np.int32), flat[starts], (pieces.shape[0], pieces.shape[1]), corner)
@@ -107,7 +112,7 @@ class LinkedPieces:
         self._parents += range(start, start + len(sizes))
         self._labels.append(np.zeros(len(sizes), dtype=np.int64) if labels is None else labels)
         self._sizes.append(np.asarray(sizes, dtype=np.float64))
-        if self._last is not None and len(sizes):
+        if self._last is not None and len(sizes) and pieces.size and self._last[0].size:
             earlier = self._starts[-2]
             for a, b in self._linking(*_common(self._last, (pieces, corner))):
                 if self._labels[-2][a - 1] == self._labels[-1][b - 1]:

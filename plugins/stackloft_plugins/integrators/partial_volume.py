@@ -32,12 +32,15 @@ from stackloft_plugins.integrators.seen_slice import Mask, SeenSlice
 
 _RING = 4
 """px: width of the rings beside the edge zone from which the two grey levels are taken."""
+_NAN = float("nan")
 _ENOUGH = 20
 """Pixels in a ring for its level to count."""
 _FEW = 4
 """Likewise of the innermost pixels of a thin body."""
 _LARGE = 40_000
 """Pixels of a crop from which on a quarter of the rings tells their levels as well."""
+_TELLING = 100
+"""Slices of a scan, evenly from first to last, that tell the two levels of all: more are no surer."""
 _OUTLIER = 6.0
 """Robust standard deviations: what is further from the background's median does not count in its mean."""
 
@@ -48,10 +51,10 @@ class PartialVolume:
 
     Assumes that grey is proportional to the filled fraction of a pixel (and of a slab, for scans) and that
     blur keeps within ``zone`` pixels of the edge; the two levels are those of rings on either side of that
-    zone, per slice for photographs, over all slices for scans. No threshold enters, so that slabs that are
-    filled to less than a half count too, those beyond the outermost contours among them. Errs with a skin of
-    another grey than the flesh below it: by its thickness times the relative difference. Gives no area.
-    Across photographs (faces) it errs as Cavalieri's rule does. Of a label map it is the sum of voxels.
+    zone, per slice for photographs, over some hundred slices for scans. No threshold enters, so that slabs
+    that are filled to less than a half count too, those beyond the outermost contours among them. Errs with a
+    skin of another grey than the flesh below it: by its thickness times the relative difference. Gives no
+    area. Across photographs (faces) it errs as Cavalieri's rule does. Of a label map it is the sum of voxels.
     """
 
     zone: int = option(2, "how far from the edge pixels may be partly filled", unit="px", ge=1, le=20)
@@ -107,6 +110,8 @@ class _CoverageSink:
         self._before: SeenSlice | None = None
         self._current: SeenSlice | None = None
         self._sums: list[_SliceSums] = []
+        slices = len(segmentation.before) + len(segmentation) + len(segmentation.after)
+        self._telling = max(1, slices // _TELLING) if self._slab else 1
         for beyond in segmentation.before:
             self._take(self._seen(beyond.field()))
 
@@ -134,7 +139,8 @@ class _CoverageSink:
             self._sums.append(_counted(self._current))
         elif self._current is not None:
             beside = (self._before, seen) if self._slab else (self._current, self._current)
-            self._sums.append(_sums(self._current, beside, self._zone))
+            tells = len(self._sums) % self._telling == 0
+            self._sums.append(_sums(self._current, beside, self._zone, tells=tells))
         self._before, self._current = self._current, seen
 
     def _covered(self) -> FloatArray:
@@ -162,25 +168,29 @@ class _CoverageSink:
 
 def _counted(current: SeenSlice) -> _SliceSums:
     """Return what one slice of a label map adds: its voxels."""
-    nan = float("nan")
-    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, nan, nan, nan)
+    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, _NAN, _NAN, _NAN)
 
 
-def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int) -> _SliceSums:
-    """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
+def _sums(
+    current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int, *, tells: bool
+) -> _SliceSums:
+    """Return what one slice adds, given its neighbours (itself, where they do not matter).
+
+    The grey levels are NaN unless it `tells` them.
+    """
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
     inside, near = _eroded(common, _disc(zone)), _dilated(united, _disc(zone))
     edge = current.section.relative_where((inside ^ near).view(np.bool_))
-    body, background = _ring_levels(current.section, inside, near)
+    body, background = _ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
         grey=float(edge.sum()),
         body=body,
         background=background,
-        near=_innermost(current, common) if np.isnan(body) else body,
+        near=_innermost(current, common) if tells and np.isnan(body) else body,
     )
 
 
