@@ -1,9 +1,11 @@
-"""A source's fingerprint: the same files give the same figures, and the report says which files."""
+"""A source's fingerprint: the same files give the same figures, and the report says which files.
+
+BLAKE3 (O'Connor, Aumasson, Neves & Wilcox-O'Hearn 2020) takes a quarter of SHA-256's time.
+"""
 
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -14,6 +16,7 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
+from blake3 import blake3
 
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import Segmentation
@@ -25,7 +28,7 @@ RUN_MARK = "measurement.json"
 
 
 def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
-    """Return the SHA-256 over the names (relative, sorted) and contents of the source's files.
+    """Return the BLAKE3 over the names (relative, sorted) and contents of the source's files.
 
     Parameters
     ----------
@@ -48,11 +51,11 @@ def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
     ...     digest_of(Path(folder)) == digest_of(Path(folder) / "*.txt")
     True
     """
-    whole = hashlib.sha256()
+    whole = blake3()
     root = source if source.is_dir() else source.parent
     block = memoryview(bytearray(_BLOCK))
     for name, path in sorted((item.relative_to(root).as_posix(), item) for item in _files(source)):
-        content = hashlib.sha256()
+        content = blake3()
         try:
             with path.open("rb", buffering=0) as stream:
                 while wanted() and (size := stream.readinto(block)):
@@ -121,7 +124,7 @@ def _files(source: Path) -> Iterator[Path]:
 
 
 def digest_of_value(value: Any) -> str:
-    """Return the SHA-256 over what a product in memory holds: arrays, numbers and text, not functions.
+    """Return the BLAKE3 over what a product in memory holds: arrays, numbers and text, not functions.
 
     Examples
     --------
@@ -129,7 +132,7 @@ def digest_of_value(value: Any) -> str:
     >>> len(digest_of_value(ContourStack(())))
     64
     """
-    whole = hashlib.sha256()
+    whole = blake3()
     for part in _parts(value):
         whole.update(part + b"\0")
     return whole.hexdigest()
@@ -181,7 +184,7 @@ class PictureDigest:
     def value(self, product: Any) -> str:
         """Return the fingerprint of the stack's geometry and the slices seen."""
         stack: SliceStack = product.stack if isinstance(product, Segmentation) else product
-        whole = hashlib.sha256()
+        whole = blake3()
         for array in (stack.positions, stack.pixel_spacing, stack.affine):
             whole.update(array.tobytes())
         for moved in (stack.origins, stack.turns):
@@ -194,7 +197,7 @@ class PictureDigest:
     def _decode(self, decode: Callable[[int], Picture], number: int) -> Picture:
         picture = decode(number)
         if number not in self._slices:
-            taken = hashlib.sha256(f"{number}{picture.dtype.str}{picture.shape}".encode())
-            taken.update(np.ascontiguousarray(picture).data)
+            taken = blake3(f"{number}{picture.dtype.str}{picture.shape}".encode())
+            taken.update(np.ascontiguousarray(picture).reshape(-1).view(np.uint8).data)
             self._slices[number] = taken.digest()
         return picture
