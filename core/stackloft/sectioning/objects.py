@@ -194,7 +194,7 @@ def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
     links, voids = linked.links, linked.voids
     voxel, total = _voxel_volumes(whole.stack), 0.0
     for k in range(len(links)):
-        if own[links.of_slice(k)].any() and voids.has_closed(k):
+        if voids.has_closed(k) and own[links.of_slice(k)].any():
             closed, (row, column) = voids.closed(k)
             window = (slice(row, row + closed.shape[0]), slice(column, column + closed.shape[1]))
             pieces, corner = links.pieces(k)

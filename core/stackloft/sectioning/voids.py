@@ -128,6 +128,9 @@ def _has_holes(bits: cv2.typing.MatLike) -> bool:
     return tree is not None and bool((tree[0, :, 3] >= 0).any())
 
 
+_NOWHERE: BoolArray = np.zeros((0, 0), dtype=np.bool_)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Slice:
     """A slice's body on a window, and the background that is closed in."""
@@ -169,6 +172,7 @@ class VoidFinder:
         self._links = LinkedPieces(CONTINUED)
         self._outside: list[BoolArray] = []
         self._closed: BoolArray | None = None
+        self._showing: frozenset[int] | None = None
         self._last: _Slice | None = None
 
     def add(self, body: BoolArray, closed: Pieces | None, corner: Corner = (0, 0)) -> None:
@@ -186,15 +190,19 @@ class VoidFinder:
 
     def closed(self, number: int) -> tuple[BoolArray, Corner]:
         """Return the pixels of a crop of slice `number` that lie in a void, and the crop's corner."""
+        if not self.has_closed(number):
+            return _NOWHERE, (0, 0)
         own = self._pieces()[self._links.of_slice(number)]
-        if not own.any():
-            return np.zeros((0, 0), dtype=np.bool_), (0, 0)
         pieces, corner = self._links.pieces(number)
         return np.concatenate([[False], own])[pieces], corner
 
     def has_closed(self, number: int) -> bool:
         """Return whether slice `number` shows any void."""
-        return bool(self._pieces()[self._links.of_slice(number)].any())
+        if self._showing is None:
+            every, closed = range(len(self._links)), self._pieces()
+            several = bool(closed.any())
+            self._showing = frozenset(k for k in every if several and closed[self._links.of_slice(k)].any())
+        return number in self._showing
 
     def _pieces(self) -> BoolArray:
         """Return whether each piece of background belongs to a void."""
