@@ -52,16 +52,15 @@ def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
     True
     """
     whole = blake3()
-    root = source if source.is_dir() else source.parent
     block = memoryview(bytearray(_BLOCK))
-    for name, path in sorted((item.relative_to(root).as_posix(), item) for item in _files(source)):
+    for name, path in sorted(_files(source)):
         content = blake3()
         try:
-            with path.open("rb", buffering=0) as stream:
+            with Path(path).open("rb", buffering=0) as stream:
                 while wanted() and (size := stream.readinto(block)):
                     content.update(block[:size])
         except OSError as error:
-            raise InputError("cannot be read", where=str(path), found=error.strerror) from error
+            raise InputError("cannot be read", where=path, found=error.strerror) from error
         whole.update(name.encode() + b"\0" + content.digest())
     return whole.hexdigest()
 
@@ -111,16 +110,21 @@ class DigestMeanwhile:
             self.seconds = time.perf_counter() - start
 
 
-def _files(source: Path) -> Iterator[Path]:
+def _files(source: Path) -> Iterator[tuple[str, str]]:
+    """Yield the names, relative to the source's folder, and the paths of its files."""
     if source.is_file():
-        yield source
+        yield source.name, str(source)
     elif not source.is_dir():
-        yield from (item for item in source.parent.glob(source.name) if item.is_file())
+        yield from ((item.name, str(item)) for item in source.parent.glob(source.name) if item.is_file())
     else:
-        for folder, folders, names in os.walk(source):
-            here = Path(folder)
-            folders[:] = [x for x in folders if not x.startswith(".") and not (here / x / RUN_MARK).exists()]
-            yield from (here / x for x in names if not x.startswith(".") and (here / x).is_file())
+        for here, folders, names in os.walk(source):
+            inside = Path(here).relative_to(source).as_posix()
+            before = "" if inside == "." else f"{inside}/"
+            folders[:] = [
+                x for x in folders if not x.startswith(".") and not Path(here, x, RUN_MARK).exists()
+            ]
+            paths = ((x, os.path.join(here, x)) for x in names if not x.startswith("."))  # noqa: PTH118 - likewise
+            yield from ((before + x, path) for x, path in paths if os.path.isfile(path))  # noqa: PTH113
 
 
 def digest_of_value(value: Any) -> str:

@@ -25,6 +25,7 @@ Corner = tuple[int, int]
 
 
 _NO_STARTS: NDArray[np.int32] = np.zeros(0, np.int32)
+_ONE_PAIR: IntArray = np.ones((1, 2), dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,7 +115,8 @@ class LinkedPieces:
         self._sizes.append(np.asarray(sizes, dtype=np.float64))
         if self._last is not None and len(sizes) and pieces.size and self._last[0].size:
             earlier = self._starts[-2]
-            for a, b in self._linking(*_common(self._last, (pieces, corner))):
+            alone = outline is not None and before is None and isinstance(self._runs[-1], _Outlined)
+            for a, b in self._linking(*_common(self._last, (pieces, corner)), alone=alone):
                 if self._labels[-2][a - 1] == self._labels[-1][b - 1]:
                     self._join(earlier + a - 1, start + b - 1)
         self._last = (pieces, corner)
@@ -152,8 +154,13 @@ class LinkedPieces:
         _, first, number = np.unique(roots, return_index=True, return_inverse=True)
         return np.argsort(np.argsort(first))[number] if len(roots) else roots
 
-    def _linking(self, a: Pieces, b: Pieces) -> IntArray:
-        """Return the linked pairs (piece of `a`, piece of `b`) of two slices' common part."""
+    def _linking(self, a: Pieces, b: Pieces, *, alone: bool) -> IntArray:
+        """Return the linked pairs (piece of `a`, piece of `b`) of two slices' common part.
+
+        `alone`: both show one piece, so that one pixel that they share, in a middle row mostly, tells.
+        """
+        if alone and not self._share and len(a) and (a[len(a) // 2] & b[len(b) // 2]).any():
+            return _ONE_PAIR
         pairs, shared = overlaps(a, b)
         if not self._share or not len(pairs):
             return pairs
@@ -180,13 +187,12 @@ def overlaps(a: Pieces, b: Pieces) -> tuple[IntArray, IntArray]:
     >>> pairs.tolist(), shared.tolist()
     ([[1, 3], [2, 3]], [1, 1])
     """
-    alone = a.dtype == b.dtype == np.uint8 and a.max(initial=0) <= 1 and b.max(initial=0) <= 1
-    both = (a & b).view(np.bool_) if alone else (a > 0) & (b > 0)
+    both = (a > 0) & (b > 0)
     shared = int(np.count_nonzero(both))
     if not shared:
         return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    if alone:  # two slices of one piece each
-        return np.ones((1, 2), dtype=np.int64), np.array([shared])
+    if a.dtype == b.dtype == np.uint8 and a.max() == b.max() == 1:  # two slices of one piece each
+        return _ONE_PAIR, np.array([shared])
     first, second = a[both].astype(np.int64), b[both].astype(np.int64)
     width = int(second.max()) + 1
     pairs, counts = np.unique(first * width + second, return_counts=True)

@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, pieces_of
 
@@ -128,6 +128,7 @@ def _has_holes(bits: cv2.typing.MatLike) -> bool:
     return tree is not None and bool((tree[0, :, 3] >= 0).any())
 
 
+_OUTSIDE_ALONE: FloatArray = np.array([_ENDLESS])
 _NOWHERE: BoolArray = np.zeros((0, 0), dtype=np.bool_)
 
 
@@ -178,13 +179,16 @@ class VoidFinder:
     def add(self, body: BoolArray, closed: Pieces | None, corner: Corner = (0, 0)) -> None:
         """Take a slice: True where any body is, on a window of it, and its `closed_background`."""
         now, before = _Slice(body, closed, corner), self._last
+        if closed is None and (before is None or before.closed is None):  # as on most slices
+            self._links.add(_NOWHERE, _OUTSIDE_ALONE, None, corner)
+            self._outside.append(_OUTSIDE_ALONE > 0.0)
+            self._last = now
+            return
         sizes = np.bincount(closed.ravel())[1:] if closed is not None else np.zeros(0)
-        numbers, place, anew = np.zeros((0, 0), np.uint8), corner, None
-        if closed is not None or (before is not None and before.closed is not None):
-            window = _around(now, before or now)
-            numbers, place = now.numbered(window), window[:2]
-            anew = (before.numbered(window), place) if before is not None else None
-        self._links.add(numbers, np.concatenate([[_ENDLESS], sizes]), None, place, anew)
+        window = _around(now, before or now)
+        anew = (before.numbered(window), window[:2]) if before is not None else None
+        every = np.concatenate([[_ENDLESS], sizes])
+        self._links.add(now.numbered(window), every, None, window[:2], anew)
         self._outside.append(np.arange(1 + len(sizes)) == 0)
         self._last = now
 
