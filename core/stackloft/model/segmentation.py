@@ -118,9 +118,6 @@ class Segmentation:
     """The `decode` of whose pictures `field_of` knows enough: as long as it is the stack's own, empty
     pictures do where nobody looks at them."""
 
-    at_hand: bool = False
-    """Whether no slice has to be decoded then, so that nothing is gained by working ahead."""
-
     @property
     def pointwise(self) -> bool:
         """Whether the field of a part of a picture is that part of its field, but for the offset."""

@@ -188,9 +188,6 @@ def decoded_ahead(
         section = segmentation.field_of(index, picture)
         return index, picture if pictures else _NO_PICTURE, section
 
-    if blind and segmentation.at_hand:
-        yield from map(work, range(len(segmentation)))
-        return
     rows, columns = segmentation.stack.shape
     yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else THREADS)
 

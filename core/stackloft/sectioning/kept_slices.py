@@ -103,8 +103,6 @@ class KeptSlices:
         self._decode = decode
         self._budget = budget
         self._room = _Room()
-        self.complete = True
-        """Whether everything that was to be kept is."""
         self._kept: dict[int, _Kept] = {}
 
     def keep(self, number: int, picture: Picture, window: Window) -> None:
@@ -113,7 +111,6 @@ class KeptSlices:
         coarse = picture[:0, :0] if inside.shape == picture.shape else picture[::STRIDE, ::STRIDE]
         taken = inside.nbytes + coarse.nbytes
         if taken > self._budget:
-            self.complete = False
             return
         self._budget -= taken
         part, rest = self._room.copied(inside), self._room.copied(coarse)

@@ -165,7 +165,6 @@ def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[N
         stack,
         replace(body, kept=linked.kept) if whole.pointwise else body,
         known_of=stack.decode if whole.pointwise else None,
-        at_hand=whole.pointwise and linked.kept.complete,
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
         before=_beyond(body, linked.kept, range(every[0] - 1, first)),
