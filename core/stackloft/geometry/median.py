@@ -16,6 +16,9 @@ def median(values: NDArray[Any]) -> float:
     >>> median(np.array([3.0, 1.0, 2.0])), median(np.array([4, 1]))
     (2.0, 2.5)
     """
-    low, high = (len(values) - 1) // 2, len(values) // 2
-    ordered = np.partition(values, high if low == high else (low, high))
-    return 0.5 * (float(ordered[low]) + float(ordered[high]))
+    middle = (len(values) - 1) // 2
+    ordered = np.partition(
+        values, middle
+    )  # one place at a time: of two at once NumPy takes ten times as long
+    low = float(ordered[middle])
+    return low if len(values) % 2 else 0.5 * (low + float(ordered[middle + 1 :].min()))

@@ -87,7 +87,7 @@ def noise_floor(values: NDArray[Any]) -> float:
     if len(values) < FEWEST:
         return 0.0
     middle = median(values)
-    away = np.abs(values - middle)
+    away = np.abs(values.astype(np.float32) - np.float32(middle))
     usual = values[away <= _OUTLIER * 1.4826 * median(away)].astype(np.float64)
     usual -= usual.mean()
     square = usual * usual

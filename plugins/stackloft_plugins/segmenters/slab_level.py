@@ -38,6 +38,8 @@ SAMPLED = 24
 """Slices looked at."""
 _DEEP, _THIN = (3, 10), (1, None)  # pixels from the boundary
 _ROUNDS = 3
+_POOLED = 1 << 14
+"""Pixels of a slice that its histogram needs."""
 _FAINT = 4.0  # standard deviations of noise
 
 
@@ -86,7 +88,7 @@ def slab_level(
 
 
 def pooled_sample(stack: SliceStack, channel: str, sampled: int) -> Grey:
-    """Return the grey levels of every fourth pixel of a sample of slices, (n)."""
+    """Return the grey levels of every fourth pixel of a sample of slices, of large ones fewer, (n)."""
     return _pooled(_sample(stack, channel, sampled))
 
 
@@ -103,7 +105,8 @@ def _levels(picture: Picture, channel: str) -> Levels:
 
 
 def _pooled(sample: list[Levels]) -> Grey:
-    return np.concatenate([grey[::2, ::2].ravel().astype(np.float32) for grey in sample])
+    step = max(2, math.isqrt(sample[0].size // _POOLED))
+    return np.concatenate([grey[::step, ::step].ravel() for grey in sample]).astype(np.float32)
 
 
 def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) -> SlabLevel:
@@ -120,7 +123,7 @@ def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) ->
         level = 0.5 * (body + air - floor * MEDIAN / MEAN)
         if level == last or (whole and _same_side(level, last)):
             break  # the bands would be the same again
-    noise = 1.4826 * median(np.abs(outside - air))
+    noise = 1.4826 * median(np.abs(outside - np.float32(air)))
     step = abs(body - air)
     dark = air - floor * MEDIAN / MEAN
     if not above or level - dark < 2.0 * EMPTY * floor:
@@ -137,7 +140,7 @@ def _same_side(level: float, other: float) -> bool:
     return math.floor(level) == math.floor(other) and math.ceil(level) == math.ceil(other)
 
 
-def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]:
+def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Levels, Levels]:
     """Return the grey levels in the bands within and beyond the boundaries; nearer where bodies are thin."""
     inside, outside = _gathered(sample, level, sign, _DEEP)
     return (inside if inside.size else _gathered(sample, level, sign, _THIN)[0]), outside
@@ -145,7 +148,7 @@ def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]
 
 def _gathered(
     sample: list[Levels], level: float, sign: float, within: tuple[int, int | None]
-) -> tuple[Grey, Grey]:
+) -> tuple[Levels, Levels]:
     found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign, within)))
     inside, outside = (np.concatenate(bands) for bands in zip(*found, strict=True))
     return inside, outside
@@ -153,19 +156,18 @@ def _gathered(
 
 def _slice_bands(
     grey: Levels, level: float, sign: float, within: tuple[int, int | None]
-) -> tuple[Grey, Grey]:
+) -> tuple[Levels, Levels]:
     """Return the levels in the band within, and in the band beyond."""
     if grey.dtype.kind in "iu":
         mask = (grey > math.floor(level) if sign > 0.0 else grey < math.ceil(level)).view(np.uint8)
     else:
         mask = (grey > level if sign > 0.0 else grey < level).view(np.uint8)
     if not mask.any() or mask.all():
-        empty = np.zeros(0, dtype=np.float32)
-        return empty, empty
+        return grey[:0, 0], grey[:0, 0]
     window = _window(mask)
     grey, mask = grey[window], np.ascontiguousarray(mask[window])
     inside, outside = _band(mask, within), _band(1 - mask, _DEEP)
-    return grey[inside].astype(np.float32), grey[outside].astype(np.float32)
+    return grey[inside], grey[outside]
 
 
 def _band(mask: cv2.typing.MatLike, within: tuple[int, int | None]) -> BoolArray:
