@@ -26,36 +26,9 @@ BUDGET = 240_000_000
 """Bytes that are kept at most."""
 STRIDE = 4
 """Of the pixels kept away from bodies."""
-_ALIGNED = 64  # bytes
 Window = tuple[slice, slice]
 _BY_OPENCV = "BHhfd"
 """Kinds of numbers that OpenCV resizes."""
-
-
-BLOCK = 16_000_000
-"""Bytes asked of the system at once."""
-
-
-class _Room:
-    """Arrays copied side by side into few large blocks.
-
-    The system hands these out by two megabytes, which takes a tenth of the time that pages one by one take.
-    """
-
-    def __init__(self) -> None:
-        self._block = np.empty(0, np.uint8)
-        self._used = 0
-
-    def copied(self, values: Picture) -> Picture:
-        """Return a read-only copy."""
-        if self._used + values.nbytes > len(self._block):
-            self._block, self._used = np.empty(max(BLOCK, values.nbytes), np.uint8), 0
-        raw = self._block[self._used : self._used + values.nbytes]
-        self._used += -(-values.nbytes // _ALIGNED) * _ALIGNED
-        copy: Picture = raw.view(values.dtype).reshape(values.shape)
-        np.copyto(copy, values)
-        copy.setflags(write=False)
-        return copy
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,6 +47,13 @@ class _Kept:
         wide[self.window] = self.part
         wide.setflags(write=False)
         return wide
+
+
+def _copied(picture: Picture) -> Picture:
+    """Return a read-only copy, so that the rest of the picture need not stay in memory."""
+    copy = np.array(picture)
+    copy.setflags(write=False)
+    return copy
 
 
 def _widened(coarse: Picture) -> Picture:
@@ -102,7 +82,6 @@ class KeptSlices:
     def __init__(self, decode: Callable[[int], Picture], budget: int = BUDGET) -> None:
         self._decode = decode
         self._budget = budget
-        self._room = _Room()
         self._kept: dict[int, _Kept] = {}
 
     def keep(self, number: int, picture: Picture, window: Window) -> None:
@@ -113,8 +92,7 @@ class KeptSlices:
         if taken > self._budget:
             return
         self._budget -= taken
-        part, rest = self._room.copied(inside), self._room.copied(coarse)
-        self._kept[number] = _Kept(part, window, rest, picture.shape)
+        self._kept[number] = _Kept(_copied(inside), window, _copied(coarse), picture.shape)
 
     def part(self, number: int) -> tuple[Picture, Window]:
         """Return what is kept as it was decoded, and its rows and columns; of a slice not kept, all of it."""
