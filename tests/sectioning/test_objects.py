@@ -1,5 +1,8 @@
 """Bodies of a scan are told apart across slices, labels however near, voids however wound."""
 
+from dataclasses import replace
+
+import cv2
 import numpy as np
 import pytest
 
@@ -7,6 +10,7 @@ from stackloft.model.errors import InputError, UsageError
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import SectionKind, SliceStack
 from stackloft.sectioning.contour_sink import trace_stack
+from stackloft.sectioning.linked_pieces import LinkedPieces, body_pieces, pieces_of
 from stackloft.sectioning.object_choice import one_object
 from stackloft.sectioning.objects import find_objects
 
@@ -123,3 +127,45 @@ def test_a_void_whose_crack_is_a_mere_notch_on_the_next_slice_is_closed():
 def test_nothing_is_an_error():
     with pytest.raises(InputError, match="no body"):
         find_objects(scan(np.zeros((3, 9, 9))))
+
+
+class Above:
+    """A field that looks at every pixel alone."""
+
+    pointwise = True
+
+    def __call__(self, number, picture):
+        return SectionField(picture, 50.0)
+
+
+def test_fields_from_what_was_kept_are_those_of_whole_pictures():
+    volume = two_bars()
+    volume[3, 8:12, 8:12] = 0  # a void on one slice
+    whole = scan(volume, fill_voids=True)
+    for body in find_objects(replace(whole, field_of=Above())):
+        own = body.segmentation
+        assert own.knows_its_pictures
+        for k in range(len(own)):
+            kept, seen = (own.field_of(k, picture) for picture in (np.zeros((0, 0)), own.stack.decode(k)))
+            assert kept.offset == seen.offset
+            assert (kept.values == seen.values).all()
+            assert (kept.outline is None) == (seen.outline is None)
+        assert not replace(own, stack=replace(own.stack, decode=lambda k: volume[k])).knows_its_pictures
+    assert not find_objects(whole)[0].segmentation.knows_its_pictures
+
+
+def test_a_piece_kept_as_its_outline_comes_back_whole():
+    rng = np.random.default_rng(3)
+    outlined = 0
+    for _ in range(300):
+        rough = cv2.GaussianBlur(rng.random((40, 50)).astype(np.float32), (0, 0), rng.uniform(0.7, 4.0))
+        numbers, sizes = pieces_of(rough > np.quantile(rough, rng.uniform(0.5, 0.97)))
+        body = numbers == 1 + int(sizes.argmax())
+        found = body_pieces(body)
+        links = LinkedPieces()
+        links.add(found.pieces, found.sizes, None, found.corner, outline=found.outline)
+        pieces, (row, column) = links.pieces(0)
+        outlined += found.outline is not None
+        assert (pieces > 0).sum() == body.sum()
+        assert ((pieces > 0) == body[row : row + pieces.shape[0], column : column + pieces.shape[1]]).all()
+    assert outlined > 150

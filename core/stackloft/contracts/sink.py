@@ -9,7 +9,10 @@ from stackloft.model.slice_stack import Picture
 
 
 class Sink(Protocol):
-    """Takes every slice of one decoding pass, in order, then gives its product."""
+    """Takes every slice of one decoding pass, in order, then gives its product.
+
+    One with a false attribute `looks_at_pictures` is content with empty pictures beside the fields.
+    """
 
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready; called once."""

@@ -94,7 +94,7 @@ def _newton_step(
 ) -> FloatArray:
     """Return the Gauss-Newton step of E for all points, (m, N)."""
     m, n = current.shape
-    bands = np.zeros((n + 1, m * n))
+    bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
     diagonal = np.zeros((m, n))
     gradient = np.zeros((m, n))
     # columns: residual Q[i+1] - Q[i]
@@ -118,10 +118,14 @@ def _newton_step(
     diagonal[fixed] += 1e12 * diagonal.max()
     gradient[fixed] = 0.0
     bands[0] = diagonal.ravel()
-    bands[1].reshape(m, n)[:, :-1] = along[:, :-1]
-    bands[n - 1].reshape(m, n)[:, 0] = along[:, -1]
+    closing = np.zeros((2, m, n))
+    closing[0, :, :-1], closing[1, :, 0] = along[:, :-1], along[:, -1]
+    bands[1], bands[n - 1] = closing.reshape(2, -1)
     bands[n] = across.ravel()
-    return -np.asarray(solveh_banded(bands, gradient.ravel(), lower=True, check_finite=False)).reshape(m, n)
+    solved = solveh_banded(
+        bands, gradient.ravel(), overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
+    )
+    return -np.asarray(solved).reshape(m, n)
 
 
 def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> FloatArray:

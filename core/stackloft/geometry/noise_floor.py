@@ -15,10 +15,13 @@ Source: Gudbjartsson & Patz (1995), Magnetic Resonance in Medicine 34:910.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from stackloft.geometry.median import median
 
 MEAN = float(np.sqrt(0.5 * np.pi))
 """Of Rayleigh's distribution, in σ."""
@@ -39,26 +42,31 @@ _SKEWED = (
 _OUTLIER = 6.0  # robust standard deviations
 
 
-def without_floor(values: NDArray[Any], background: float, floor: float) -> NDArray[np.float32]:
-    """Return grey levels with what noise adds to empty pixels taken off these.
+@dataclass(frozen=True, slots=True)
+class NoiseFloor:
+    """What noise adds to the empty pixels of a magnitude picture."""
 
-    Parameters
-    ----------
-    values : array
-        Grey levels, signal towards higher ones.
-    background : float
-        Grey level of no signal.
-    floor : float
-        From `noise_floor`.
+    empty: float
+    """Grey level below which a pixel is taken for empty."""
+    lift: float
+    """Grey levels that noise adds to such a pixel's mean."""
 
-    Examples
-    --------
-    >>> without_floor(np.array([10.0, 12.0, 60.0]), 0.0, 10.0).tolist()
-    [0.0, 2.0, 60.0]
-    """
-    grey = values.astype(np.float32)
-    grey[grey < np.float32(background + EMPTY * floor)] -= np.float32(floor)
-    return grey
+    @staticmethod
+    def over(background: float, lift: float) -> NoiseFloor | None:
+        """Return the floor of `lift` grey levels (from `noise_floor`) over no signal; None of 0."""
+        return NoiseFloor(background + EMPTY * lift, lift) if lift > 0.0 else None
+
+    def taken_off(self, values: NDArray[Any]) -> NDArray[np.float64]:
+        """Return grey levels without what noise adds to empty pixels, signal being towards higher ones.
+
+        Examples
+        --------
+        >>> NoiseFloor.over(0.0, 10.0).taken_off(np.array([10.0, 12.0, 60.0])).tolist()
+        [0.0, 2.0, 60.0]
+        """
+        grey = values.astype(np.float64)
+        grey -= self.lift * (grey < self.empty)  # a fifth of the time that picking them out takes
+        return grey
 
 
 def noise_floor(values: NDArray[Any]) -> float:
@@ -78,12 +86,14 @@ def noise_floor(values: NDArray[Any]) -> float:
     """
     if len(values) < FEWEST:
         return 0.0
-    middle = float(np.median(values))
-    robust = 1.4826 * float(np.median(np.abs(values - middle)))
-    usual = values[np.abs(values - middle) <= _OUTLIER * robust].astype(np.float64)
-    spread = float(usual.std()) if len(usual) else 0.0
+    middle = median(values)
+    away = np.abs(values.astype(np.float32) - np.float32(middle))
+    usual = values[away <= _OUTLIER * 1.4826 * median(away)].astype(np.float64)
+    usual -= usual.mean()
+    square = usual * usual
+    spread = float(np.sqrt(square.mean()))
     if not spread > 0.0:
         return 0.0
-    skewness = float((((usual - usual.mean()) / spread) ** 3).mean())
+    skewness = float((square @ usual) / (len(usual) * spread**3))
     trust = float(np.interp(skewness, _SKEWED, (0.0, 1.0, 1.0, 0.0)))
     return trust * MEAN / SPREAD * spread

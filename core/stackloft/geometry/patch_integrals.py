@@ -7,9 +7,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.bezier_patch import bernstein, bernstein_slope, evaluate
+from stackloft.geometry.bezier_patch import bernstein, bernstein_slope
 
 FloatArray = NDArray[np.float64]
+
+AT_ONCE = 1024
+"""Patches integrated at once, so that what is in between stays in the processor's cache."""
 
 
 @lru_cache
@@ -44,21 +47,34 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
     volume : float, mm³
     area : float, mm²
     """
+    rules, weights = _surface_rule(degree)
+    controls = patches.reshape(-1, 16, 3)
+    flux, length = np.zeros(len(weights)), np.zeros(len(weights))
+    for start in range(0, len(controls), AT_ONCE):
+        local = controls[start : start + AT_ONCE] - origin
+        planes = np.ascontiguousarray(local.transpose(1, 2, 0)).reshape(16, -1)
+        point, along, across = (rules @ planes).reshape(3, len(weights), 3, -1)
+        normal = _cross(along, across)
+        flux += np.einsum("gdn,gdn->g", point, normal)
+        length += np.sqrt(np.einsum("gdn,gdn->gn", normal, normal)).sum(axis=1)
+    return float(weights @ flux) / 3.0, float(weights @ length)
+
+
+@lru_cache
+def _surface_rule(degree: int) -> tuple[FloatArray, FloatArray]:
+    """Return what makes P, P_u, P_v at g² Gauss points of control points, (3·g², 16), and weights (g²)."""
     x, w = gauss_unit(degree)
     value, slope = bernstein(x), bernstein_slope(x)
-    local = patches - origin
-    point = evaluate(local, value, value)
-    normal = _cross(evaluate(local, value, slope), evaluate(local, slope, value))
-    flux = np.einsum("...d,...d->...", point, normal).reshape(-1, len(w), len(w)).sum(axis=0)
-    length = np.sqrt((normal**2).sum(axis=-1)).reshape(-1, len(w), len(w)).sum(axis=0)
-    return float(w @ flux @ w) / 3.0, float(w @ length @ w)
+    parts = [np.kron(value, value), np.kron(value, slope), np.kron(slope, value)]
+    return np.asarray(np.concatenate(parts)), np.asarray(np.kron(w, w))
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return a × b over the last axis; several times quicker than `numpy.cross` on small arrays."""
+    """Return a × b over the middle axis."""
     result = np.empty_like(a)
     for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
-        result[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+        np.multiply(a[:, i], b[:, j], out=result[:, k])
+        result[:, k] -= a[:, j] * b[:, i]
     return result
 
 

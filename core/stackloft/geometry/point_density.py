@@ -8,6 +8,7 @@ splines with variable knots).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,14 @@ class Spread:
         return np.asarray(whole + np.interp(t - whole, self.shares[section], self._grid()))
 
     def _grid(self) -> FloatArray:
-        return np.linspace(0.0, 1.0, self.shares.shape[1])
+        return _even(self.shares.shape[1])
+
+
+@lru_cache
+def _even(count: int) -> FloatArray:
+    grid = np.linspace(0.0, 1.0, count)
+    grid.setflags(write=False)
+    return grid
 
 
 def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread:
@@ -62,8 +70,8 @@ def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread
     count = tangents.shape[1]
     heading = np.ascontiguousarray(tangents, dtype=np.float64).view(np.complex128)[..., 0]
     turn = np.abs(np.angle(np.roll(heading, -1, axis=1) / heading))
-    away_from_corners = np.stack([_away(marks, count) for marks in corners])
-    turn = turn * away_from_corners
+    if any(len(marks) for marks in corners):
+        turn = turn * np.stack([_away(marks, count) for marks in corners])
     frequency = np.fft.rfftfreq(count)
     kernel = np.exp(-2.0 * (np.pi * SMOOTHING * frequency) ** 2)
     smooth = np.maximum(np.fft.irfft(np.fft.rfft(turn, axis=1) * kernel, count, axis=1), 0.0)

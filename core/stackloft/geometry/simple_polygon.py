@@ -32,9 +32,24 @@ def crosses_itself(points: FloatArray) -> BoolArray:
     >>> crosses_itself(np.stack([square, square[[0, 2, 1, 3]]])).tolist()
     [False, True]
     """
+    found = ~_star_shaped(points)
+    unsure = points[found]
     together = max(1, AT_ONCE // max(1, points.shape[1] ** 2))
-    parts = [_cross(points[k : k + together]) for k in range(0, len(points), together)]
-    return np.concatenate([np.zeros(0, dtype=np.bool_), *parts])
+    parts = [_cross(unsure[k : k + together]) for k in range(0, len(unsure), together)]
+    found[found] = np.concatenate([np.zeros(0, dtype=np.bool_), *parts])
+    return found
+
+
+def _star_shaped(points: FloatArray) -> BoolArray:
+    """Return for each polygon whether it runs once round the mean of its vertices, and never back."""
+    arm = points - points.mean(axis=1, keepdims=True)
+    x, y = arm[..., 0], arm[..., 1]
+    next_x, next_y = (np.concatenate([each[:, 1:], each[:, :1]], axis=1) for each in (x, y))
+    turn = x * next_y - y * next_x
+    slack = 1e-12 * np.abs(arm).max(axis=(1, 2), initial=0.0)[:, None] ** 2
+    onwards = (turn > slack).all(axis=1) | (turn < -slack).all(axis=1)
+    once = ((y < 0.0) & (next_y >= 0.0)).sum(axis=1) == 1
+    return np.asarray(onwards & once)
 
 
 def _cross(points: FloatArray) -> BoolArray:

@@ -16,6 +16,11 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _BUMPS = 4
+_POWERS = 7
+_BASIS = np.array([[1, -3, 3, -1], [4, 0, -6, 3], [1, 3, 3, -3], [0, 0, 0, 1]]) / 6.0
+"""The four bumps on a span, each by powers of the place within it."""
+_PRODUCTS = np.array([[np.convolve(a, b) for b in _BASIS] for a in _BASIS])
+"""Of every two of them, likewise: (4, 4, 7)."""
 
 
 def fit_uniform(t: FloatArray, points: FloatArray, spans: int, at: FloatArray) -> FloatArray:
@@ -24,7 +29,7 @@ def fit_uniform(t: FloatArray, points: FloatArray, spans: int, at: FloatArray) -
     Parameters
     ----------
     t : (n,) array
-        Parameters of the points, in [0, spans]; at least two in every span.
+        Parameters of the points, increasing, in [0, spans]; at least two in every span.
     points : (n, d) array
     spans : int
     at : (k,) array
@@ -59,32 +64,55 @@ def fit_uniform_all(
     """
     sizes = np.array(spans) + _BUMPS - 1
     offsets, count = np.cumsum(sizes) - sizes, int(sizes.sum())
-    first, weights = _basis(t, spans, offsets)
-    bands = np.zeros((_BUMPS, count))
-    right = np.zeros((count, points.shape[1]))
+    moments = _moments(*_placed(t, spans, offsets), points.T, count)
+    bands, right = np.zeros((_BUMPS, count)), np.zeros((points.shape[1], count))
+    products = np.tensordot(_PRODUCTS, moments[:_POWERS], 1)  # of every two bumps, summed over each span
+    values = np.tensordot(_BASIS, moments[_POWERS:].reshape(points.shape[1], _BUMPS, count), (1, 1))
     for a in range(_BUMPS):
+        upto = count - a
         for b in range(a, _BUMPS):
-            bands[b - a] += np.bincount(first + a, weights[a] * weights[b], minlength=count)
-        for axis in range(points.shape[1]):
-            right[:, axis] += np.bincount(first + a, weights[a] * points[:, axis], minlength=count)
-    solved = solveh_banded(bands, right, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
-    first, weights = _basis(at, spans, offsets)
-    values: FloatArray = weights[0][:, None] * solved[first]
-    for a in range(1, _BUMPS):
-        values += weights[a][:, None] * solved[first + a]
-    return np.split(values, np.cumsum([len(wanted) for wanted in at])[:-1])
+            bands[b - a, a:] += products[a, b, :upto]
+        right[:, a:] += values[a, :, :upto]
+    solved = solveh_banded(
+        bands, right.T, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False
+    )
+    return np.split(_evaluated(solved.T, *_placed(at, spans, offsets)), np.cumsum([len(x) for x in at])[:-1])
 
 
-def _basis(
+def _placed(
     each: Sequence[FloatArray], spans: Sequence[int], offsets: IntArray
 ) -> tuple[IntArray, FloatArray]:
-    """Return the first of the four B-splines that are not zero at each t, and their values, (4, n)."""
+    """Return the span in which each t lies, numbered over all splines, and how far in."""
     counts = [len(t) for t in each]
     t = np.concatenate(each)
     first = np.minimum(t.astype(np.int64), np.repeat(spans, counts) - 1)
     x = t - first
-    y = 1.0 - x
-    weights = np.stack([y * y * y, 4.0 - 3.0 * x * x * (1.0 + y), 4.0 - 3.0 * y * y * (1.0 + x), x * x * x])
-    weights /= 6.0
     first += np.repeat(offsets, counts)
-    return first, weights
+    return first, x
+
+
+def _moments(first: IntArray, x: FloatArray, planes: FloatArray, count: int) -> FloatArray:
+    """Return Σ xᵏ for k = 0 … 6 over each span, then Σ xᵏ·p for k = 0 … 3 of each coordinate p."""
+    rows = np.empty((_POWERS + _BUMPS * len(planes), len(x)))
+    rows[0] = 1.0
+    for k in range(1, _POWERS):
+        np.multiply(rows[k - 1], x, out=rows[k])
+    for start, p in zip(range(_POWERS, len(rows), _BUMPS), planes, strict=True):
+        np.multiply(rows[:_BUMPS], p, out=rows[start : start + _BUMPS])
+    starts = np.flatnonzero(np.diff(first, prepend=-1))
+    moments = np.zeros((len(rows), count))
+    moments[:, first[starts]] = np.add.reduceat(rows, starts, axis=1)
+    return moments
+
+
+def _evaluated(solved: FloatArray, first: IntArray, x: FloatArray) -> FloatArray:
+    """Return Σ solved · bump at the places, (n, d), of solved (d, count)."""
+    bumps = np.zeros((_BUMPS, *solved.shape))
+    for a in range(_BUMPS):
+        bumps[a, :, : solved.shape[1] - a] = solved[:, a:]
+    powers = np.tensordot(_BASIS.T, bumps, 1)  # of each span's cubic, (4, d, count)
+    values = np.empty((len(x), len(solved)))
+    for axis in range(len(solved)):
+        c0, c1, c2, c3 = powers[:, axis].take(first, axis=1)
+        values[:, axis] = c0 + x * (c1 + x * (c2 + x * c3))
+    return values

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
@@ -28,8 +29,7 @@ class Loop:
     @property
     def signed_area(self) -> float:
         """Shoelace area of the polygon, mm²; positive when counter-clockwise in (x, y)."""
-        x, y = self.points.T
-        return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+        return polygon_area(self.points)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

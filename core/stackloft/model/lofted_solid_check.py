@@ -36,7 +36,7 @@ def check_lofted_solid(solid: LoftedSolid) -> None:
                 raise InputError(
                     "the surface is open", where=f"shell {number + 1}", found=f"a rim in {count} joints"
                 )
-    whole = max(float(np.ptp(shell.patches.reshape(-1, 3), axis=0).max()) for shell in solid.shells)
+    whole = max(_size(shell.patches) for shell in solid.shells) if solid.joints else 0.0
     for number, joint in enumerate(solid.joints, start=1):
         _check_joint(joint, solid.shells, whole, f"joint {number}")
 
@@ -48,7 +48,7 @@ def _check_joint(joint: Joint, shells: tuple[Shell, ...], whole: float, name: st
         raise InputError("the surface is open", where=name, found="an edge that does not belong to two rims")
     for rim in joint.rims:
         patches = shells[rim.shell].patches
-        size = float(np.ptp(patches.reshape(-1, 3), axis=0).max())
+        size = _size(patches)
         runs = [joint.edges[edge][:: 1 if forward else -1] for edge, forward in rim.edges]
         following = [*runs[1:], runs[0]]
         for run, after in zip(runs, following, strict=True):
@@ -74,14 +74,21 @@ def _check_shell(shell: Shell, name: str) -> None:
         raise InputError("not a grid of bicubic patches", where=name, found=str(patches.shape))
     if not np.isfinite(patches).all():
         raise InputError("points that are not finite", where=name)
-    size = float(np.ptp(patches.reshape(-1, 3), axis=0).max())
-    _check_gap(
-        patches[:, :, :, 3] - np.roll(patches, -1, axis=1)[:, :, :, 0], size, f"{name}, along the loop"
-    )
+    size = _size(patches)
+    around = f"{name}, along the loop"
+    _check_gap(patches[:, :-1, :, 3] - patches[:, 1:, :, 0], size, around)
+    _check_gap(patches[:, -1, :, 3] - patches[:, 0, :, 0], size, around)
     _check_gap(patches[:-1, :, 3] - patches[1:, :, 0], size, f"{name}, across sections")
     for rim, end, which in zip((patches[0, :, 0], patches[-1, :, 3]), shell.ends, _ENDS, strict=True):
         flat = rim - rim[0, 0] if end is ShellEnd.POLE else rim[..., 2] - rim[0, 0, 2]
         _check_gap(flat, size, f"{name}, {which} end")
+
+
+def _size(patches: FloatArray) -> float:
+    """Return the longest side of the box around all control points, mm."""
+    many = patches.reshape(-1, 48)  # patch by patch: long rows take a tenth of the time that points do
+    ends = many.max(axis=0).reshape(16, 3).max(axis=0) - many.min(axis=0).reshape(16, 3).min(axis=0)
+    return float(ends.max())
 
 
 _ENDS = ("first", "last")

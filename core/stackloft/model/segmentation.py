@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
@@ -34,6 +35,8 @@ class SectionField:
     """(k, 2) column, row in the slice: the body's border pixels in order around it, from the leftmost of its
     first row, where somebody has found that the body is one piece without a hole and nowhere held together by
     corners alone. None: not known."""
+    noise: NoiseFloor | None = None
+    """What noise still adds to empty pixels of `values`, far below the level; None: nothing."""
 
     def above(self) -> BoolArray:
         """Return where the body is, (rows, columns).
@@ -51,7 +54,27 @@ class SectionField:
     def relative(self) -> FloatArray:
         """Return the field above its level, float64: zero on the boundary."""
         level = self.level if self.local_levels is None else self.local_levels
-        return np.asarray(np.subtract(self.values, level, dtype=np.float64))
+        values = self.values if self.noise is None else self.noise.taken_off(self.values)
+        return np.asarray(np.subtract(values, level, dtype=np.float64))
+
+    def relative_where(self, mask: BoolArray) -> FloatArray:
+        """Return the same at the True pixels of a mask, (n), row after row.
+
+        Examples
+        --------
+        >>> section = SectionField(np.array([[2, 3]], dtype=np.int16), 2.5)
+        >>> section.relative_where(np.array([[False, True]])).tolist()
+        [0.5]
+        """
+        values = self.values[mask]
+        level = self.level if self.local_levels is None else self.local_levels[mask]
+        grey = values.astype(np.float64) if self.noise is None else self.noise.taken_off(values)
+        return np.asarray(np.subtract(grey, level, out=grey))
+
+    def every(self, step: int) -> SectionField:
+        """Return every `step`-th pixel of every `step`-th row, for its grey levels; it is at no place."""
+        local = None if self.local_levels is None else self.local_levels[::step, ::step]
+        return replace(self, values=self.values[::step, ::step], local_levels=local, outline=None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +97,8 @@ class Segmentation:
 
     stack: SliceStack
     field_of: Callable[[int, Picture], SectionField]
-    """(slice number, decoded picture) to the slice's field; safe to call from several threads."""
+    """(slice number, decoded picture) to the slice's field; safe to call from several threads. One with a
+    true attribute `pointwise` looks at every pixel alone: of a part of a picture it makes that part of it."""
     binary: bool = False
     """True for label maps: no grey levels, so contours are stair-stepped and say so."""
     notices: tuple[Notice, ...] = ()
@@ -92,12 +116,22 @@ class Segmentation:
     """Slices before the first one that the body may reach into, in order."""
     after: tuple[Beyond, ...] = ()
     """Slices after the last one that the body may reach into, in order."""
+    known_of: Callable[[int], Picture] | None = None
+    """The `decode` of whose pictures `field_of` knows enough: as long as it is the stack's own, empty
+    pictures do where nobody looks at them."""
+
+    @property
+    def pointwise(self) -> bool:
+        """Whether the field of a part of a picture is that part of its field, but for the offset."""
+        return bool(getattr(self.field_of, "pointwise", False))
 
     def __len__(self) -> int:
         return len(self.stack)
 
     def field_at(self, index: int) -> SectionField:
         """Return the field of slice `index`, decoding no more of its picture than the field needs."""
+        if self.known_of is not None and self.known_of is self.stack.decode:
+            return self.field_of(index, np.zeros((0, 0), np.uint8))
         decode = self.stack.luminance if self.luminance_alone else self.stack.decode
         return self.field_of(index, decode(index))
 

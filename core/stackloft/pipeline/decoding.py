@@ -28,8 +28,10 @@ class OwnSink:
 
     @property
     def sees_pictures(self) -> bool:
-        """Whether the sink may look at pictures: a plug-in's may, the run's own follows contours alone."""
-        return self._step is not None and self.error is None
+        """Whether the sink may look at pictures: a plug-in's may, unless it says that it does not."""
+        return (
+            self._step is not None and self.error is None and getattr(self._sink, "looks_at_pictures", True)
+        )
 
     def begin(self, segmentation: Segmentation) -> None:
         """Hand on the segmentation."""

@@ -1,9 +1,11 @@
-"""A source's fingerprint: the same files give the same figures, and the report says which files."""
+"""A source's fingerprint: the same files give the same figures, and the report says which files.
+
+BLAKE3 (O'Connor, Aumasson, Neves & Wilcox-O'Hearn 2020) takes a quarter of SHA-256's time.
+"""
 
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -14,6 +16,7 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
+from blake3 import blake3
 
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import Segmentation
@@ -25,7 +28,7 @@ RUN_MARK = "measurement.json"
 
 
 def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
-    """Return the SHA-256 over the names (relative, sorted) and contents of the source's files.
+    """Return the BLAKE3 over the names (relative, sorted) and contents of the source's files.
 
     Parameters
     ----------
@@ -48,17 +51,16 @@ def digest_of(source: Path, wanted: Callable[[], bool] = lambda: True) -> str:
     ...     digest_of(Path(folder)) == digest_of(Path(folder) / "*.txt")
     True
     """
-    whole = hashlib.sha256()
-    root = source if source.is_dir() else source.parent
+    whole = blake3()
     block = memoryview(bytearray(_BLOCK))
-    for name, path in sorted((item.relative_to(root).as_posix(), item) for item in _files(source)):
-        content = hashlib.sha256()
+    for name, path in sorted(_files(source)):
+        content = blake3()
         try:
-            with path.open("rb", buffering=0) as stream:
+            with Path(path).open("rb", buffering=0) as stream:
                 while wanted() and (size := stream.readinto(block)):
                     content.update(block[:size])
         except OSError as error:
-            raise InputError("cannot be read", where=str(path), found=error.strerror) from error
+            raise InputError("cannot be read", where=path, found=error.strerror) from error
         whole.update(name.encode() + b"\0" + content.digest())
     return whole.hexdigest()
 
@@ -108,20 +110,25 @@ class DigestMeanwhile:
             self.seconds = time.perf_counter() - start
 
 
-def _files(source: Path) -> Iterator[Path]:
+def _files(source: Path) -> Iterator[tuple[str, str]]:
+    """Yield the names, relative to the source's folder, and the paths of its files."""
     if source.is_file():
-        yield source
+        yield source.name, str(source)
     elif not source.is_dir():
-        yield from (item for item in source.parent.glob(source.name) if item.is_file())
+        yield from ((item.name, str(item)) for item in source.parent.glob(source.name) if item.is_file())
     else:
-        for folder, folders, names in os.walk(source):
-            here = Path(folder)
-            folders[:] = [x for x in folders if not x.startswith(".") and not (here / x / RUN_MARK).exists()]
-            yield from (here / x for x in names if not x.startswith(".") and (here / x).is_file())
+        for here, folders, names in os.walk(source):
+            inside = Path(here).relative_to(source).as_posix()
+            before = "" if inside == "." else f"{inside}/"
+            folders[:] = [
+                x for x in folders if not x.startswith(".") and not Path(here, x, RUN_MARK).exists()
+            ]
+            paths = ((x, os.path.join(here, x)) for x in names if not x.startswith("."))  # noqa: PTH118 - likewise
+            yield from ((before + x, path) for x, path in paths if os.path.isfile(path))  # noqa: PTH113
 
 
 def digest_of_value(value: Any) -> str:
-    """Return the SHA-256 over what a product in memory holds: arrays, numbers and text, not functions.
+    """Return the BLAKE3 over what a product in memory holds: arrays, numbers and text, not functions.
 
     Examples
     --------
@@ -129,7 +136,7 @@ def digest_of_value(value: Any) -> str:
     >>> len(digest_of_value(ContourStack(())))
     64
     """
-    whole = hashlib.sha256()
+    whole = blake3()
     for part in _parts(value):
         whole.update(part + b"\0")
     return whole.hexdigest()
@@ -181,7 +188,7 @@ class PictureDigest:
     def value(self, product: Any) -> str:
         """Return the fingerprint of the stack's geometry and the slices seen."""
         stack: SliceStack = product.stack if isinstance(product, Segmentation) else product
-        whole = hashlib.sha256()
+        whole = blake3()
         for array in (stack.positions, stack.pixel_spacing, stack.affine):
             whole.update(array.tobytes())
         for moved in (stack.origins, stack.turns):
@@ -194,7 +201,7 @@ class PictureDigest:
     def _decode(self, decode: Callable[[int], Picture], number: int) -> Picture:
         picture = decode(number)
         if number not in self._slices:
-            taken = hashlib.sha256(f"{number}{picture.dtype.str}{picture.shape}".encode())
-            taken.update(np.ascontiguousarray(picture).data)
+            taken = blake3(f"{number}{picture.dtype.str}{picture.shape}".encode())
+            taken.update(np.ascontiguousarray(picture).reshape(-1).view(np.uint8).data)
             self._slices[number] = taken.digest()
         return picture

@@ -115,18 +115,18 @@ class _Measured:
 
 @contextmanager
 def _reading(plan: Plan, request: MeasureRequest, product: Any, progress: Progress) -> Iterator[_Reading]:
-    """Give what the run starts from; the fingerprint of files is taken while it goes on."""
+    """Give what the run starts from; the fingerprint of files is taken meanwhile, from their headers on."""
     if plan.reader is None:
         yield _in_memory(product)
         return
-    progress.begin("read", None)
-    start = time.perf_counter()
-    try:
-        found = guarded(plan.reader.loaded, plan.reader.instance.read, request.source)
-    finally:
-        progress.end()
-    seconds = {"read": time.perf_counter() - start}
     with DigestMeanwhile(request.source) as meanwhile:
+        progress.begin("read", None)
+        start = time.perf_counter()
+        try:
+            found = guarded(plan.reader.loaded, plan.reader.instance.read, request.source)
+        finally:
+            progress.end()
+        seconds = {"read": time.perf_counter() - start}
 
         def digest() -> str:
             value = meanwhile.value()

@@ -8,7 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, TypeVar
 
 THREADS = 2
-"""Threads that decode and segment."""
+"""Threads that decode and segment, and as many that work behind."""
 
 AHEAD = 3
 """Slices worked on before they are asked for; with the one in hand, the pictures in memory."""
@@ -41,9 +41,9 @@ def worked_ahead(count: int, work: Callable[[int], T], ahead: int = AHEAD) -> It
 
 
 class Behind:
-    """Work done by a thread of its own, one piece after the other, while its giver goes on.
+    """Work done by threads of its own while its giver goes on.
 
-    At most one piece waits while another is worked on, so that what they hold does not pile up.
+    At most one piece waits while others are worked on, so that what they hold does not pile up.
 
     Examples
     --------
@@ -55,7 +55,7 @@ class Behind:
     """
 
     def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="stackloft-behind")
+        self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-behind")
         self._given: deque[Future[Any]] = deque()
         self._done: list[Any] = []
 
@@ -67,7 +67,7 @@ class Behind:
         Exception
             What an earlier piece raised; nothing more is worked on then.
         """
-        while len(self._given) > 1:
+        while len(self._given) > THREADS:
             self._take()
         self._given.append(self._pool.submit(work))
 

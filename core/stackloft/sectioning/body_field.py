@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -13,6 +13,7 @@ from stackloft.model.arrays import BoolArray
 from stackloft.model.scale import scale_of_slices
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Hints, Picture, SliceStack
+from stackloft.sectioning.kept_slices import KeptSlices
 from stackloft.sectioning.linked_pieces import Corner, LinkedPieces
 from stackloft.sectioning.voids import VoidFinder
 
@@ -35,11 +36,23 @@ class BodyField:
     """Number of the body's first slice in the whole scan."""
     outlines: Mapping[int, NDArray[np.int32]]
     """As `SectionField` has them, by number in the whole scan, where they are known."""
+    kept: KeptSlices | None = None
+    """Where pixels look alone (`Segmentation.pointwise`): what is kept of the scan's slices."""
+    _boxes: dict[int, Box | None] = field(default_factory=dict)
+    """By number in the whole scan, of those asked for before: neighbours ask for the same ones."""
 
     def __call__(self, number: int, picture: Picture) -> SectionField:
-        """Return the field of the body's slice `number`."""
+        """Return the field of the body's slice `number`; an empty picture stands for what is kept of it."""
         index = number + self.first
-        section = self.whole.field_of(index, picture)
+        if picture.size or self.kept is None:
+            return self._shown(index, self.whole.field_of(index, picture))
+        part, (rows, columns) = self.kept.part(index)
+        return self._shown(
+            index, replace(self.whole.field_of(index, part), offset=(rows.start, columns.start))
+        )
+
+    def _shown(self, index: int, section: SectionField) -> SectionField:
+        """Return a slice's field with the body alone."""
         own = self.own[self.links.of_slice(index)]
         closed, closed_corner = self.voids.closed(index) if self.whole.fill_voids else (_NONE, (0, 0))
         if len(own) == 1 and own[0] and not closed.size and not self.whole.labels:
@@ -59,7 +72,7 @@ class BodyField:
             others = placed((pieces > 0) & ~shown, corner, window)
             within = enclosed(placed(closed, closed_corner, window), mine, others)
             field = np.where(within, np.maximum(np.abs(field), np.finfo(float).tiny), field)
-        return replace(part, values=field + level)
+        return replace(part, values=field + level, noise=None)
 
     def shows(self, index: int) -> bool:
         """Return whether the body is on slice `index` of the whole scan."""
@@ -72,6 +85,11 @@ class BodyField:
         return None if not boxes else _joined(boxes)
 
     def _own_box(self, index: int) -> Box | None:
+        if index not in self._boxes:
+            self._boxes[index] = self._box_of(index)
+        return self._boxes[index]
+
+    def _box_of(self, index: int) -> Box | None:
         own = self.own[self.links.of_slice(index)]
         if not own.any():
             return None

@@ -22,7 +22,7 @@ def cleaned(section: SectionField, *, labels: bool, rules: TraceRules | None = N
     if labels or _is_clean(section):
         return section
     level = section.level if section.local_levels is None else section.local_levels
-    return replace(section, values=clean_field(section, labels=False, rules=rules) + level)
+    return replace(section, values=clean_field(section, labels=False, rules=rules) + level, noise=None)
 
 
 def _is_clean(section: SectionField) -> bool:

@@ -30,6 +30,7 @@ HELD = 4_000_000
 """Bytes: slices whose fields take more are traced without waiting for others."""
 LARGE = 4_000_000
 """Pixels: of larger pictures no more are held than there are threads."""
+_NO_PICTURE: Picture = np.zeros((0, 0), np.uint8)
 _NAMED = 3  # slices named in a notice that stands for several
 
 
@@ -180,11 +181,10 @@ def decoded_ahead(
     Two threads work ahead (`worked_ahead`), less far where pictures are large. Where nobody looks at the
     `pictures`, an empty one is given and nothing of them stays in memory.
     """
-    nothing = np.zeros((0, 0), np.uint8)
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
         if not pictures:
-            return index, nothing, segmentation.field_at(index)
+            return index, _NO_PICTURE, segmentation.field_at(index)
         picture = segmentation.stack.decode(index)
         return index, picture, segmentation.field_beside(index, picture)
 

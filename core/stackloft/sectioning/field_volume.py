@@ -77,6 +77,8 @@ class VolumeSink:
         Memory for the volume, MB; while a method works on it, it may need twice or three times as much.
     """
 
+    looks_at_pictures = False
+
     def __init__(self, finish: Callable[[FieldVolume], Any], *, grey: bool, limit: float) -> None:
         self._finish = finish
         self._dtype = np.dtype(np.float32 if grey else np.bool_)

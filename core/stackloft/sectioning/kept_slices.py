@@ -5,8 +5,8 @@ r"""Pictures kept between finding the bodies and measuring one, so that no slice
     +----------------+      whole: where bodies are, with a margin, as it was decoded;
     | . . . . . . .  |      dots: every fourth pixel of the rest, for people's thumbnails
     | . +-------+ .  |
-    | . | body  | .  |      where the window is half of the slice, all of it is kept;
-    | . +-------+ .  |      above BUDGET bytes nothing more is, and the slice is decoded again
+    | . | body  | .  |      above BUDGET bytes nothing more is kept, and the slice is decoded again
+    | . +-------+ .  |
     +----------------+
 
 Which pieces are the body is known only when all slices have been seen.
@@ -49,17 +49,19 @@ class _Kept:
         return wide
 
 
+def _copied(picture: Picture) -> Picture:
+    """Return a read-only copy, so that the rest of the picture need not stay in memory."""
+    copy = np.array(picture)
+    copy.setflags(write=False)
+    return copy
+
+
 def _widened(coarse: Picture) -> Picture:
     """Return the picture with every pixel `STRIDE` times as wide and as high."""
     if coarse.dtype.char in _BY_OPENCV and coarse.size:  # half the time, and other threads go on meanwhile
         size = (STRIDE * coarse.shape[1], STRIDE * coarse.shape[0])
         return np.asarray(cv2.resize(coarse, size, interpolation=cv2.INTER_NEAREST))
     return coarse.repeat(STRIDE, axis=0).repeat(STRIDE, axis=1)
-
-
-def _is_own(picture: Picture) -> bool:
-    """Return whether keeping a picture keeps nothing but it."""
-    return picture.base is None or getattr(picture.base, "nbytes", 0) == picture.nbytes
 
 
 class KeptSlices:
@@ -85,13 +87,20 @@ class KeptSlices:
     def keep(self, number: int, picture: Picture, window: Window) -> None:
         """Keep what matters of a slice, unless too much has been kept already."""
         inside = picture[window]
-        whole = 2 * inside.nbytes >= picture.nbytes and _is_own(picture)
-        taken = picture.nbytes if whole else inside.nbytes + picture.nbytes // STRIDE**2
+        coarse = picture[:0, :0] if inside.shape == picture.shape else picture[::STRIDE, ::STRIDE]
+        taken = inside.nbytes + coarse.nbytes
         if taken > self._budget:
             return
         self._budget -= taken
-        coarse = picture[:0, :0] if whole else np.array(picture[::STRIDE, ::STRIDE])
-        self._kept[number] = _Kept(picture if whole else np.array(inside), window, coarse, picture.shape)
+        self._kept[number] = _Kept(_copied(inside), window, _copied(coarse), picture.shape)
+
+    def part(self, number: int) -> tuple[Picture, Window]:
+        """Return what is kept as it was decoded, and its rows and columns; of a slice not kept, all of it."""
+        kept = self._kept.get(number)
+        if kept is not None:
+            return kept.part, kept.window
+        picture = self._decode(number)
+        return picture, (slice(0, picture.shape[0]), slice(0, picture.shape[1]))
 
     def __call__(self, number: int) -> Picture:
         """Return the slice as it was kept, or decode it again."""

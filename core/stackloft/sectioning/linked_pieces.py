@@ -24,6 +24,10 @@ Corner = tuple[int, int]
 """(row, column) of a crop's first pixel in the slice."""
 
 
+_NO_STARTS: NDArray[np.int32] = np.zeros(0, np.int32)
+_ONE_PAIR: IntArray = np.ones((1, 2), dtype=np.int64)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Runs:
     """A slice's pieces as runs of equal numbers."""
@@ -35,6 +39,8 @@ class _Runs:
 
     @staticmethod
     def of(pieces: Pieces, corner: Corner) -> _Runs:
+        if not pieces.size:
+            return _Runs(_NO_STARTS, pieces.ravel(), (pieces.shape[0], pieces.shape[1]), corner)
         flat = pieces.ravel()
         starts = np.concatenate([[0], np.flatnonzero(flat[1:] != flat[:-1]) + 1])[: flat.size]
         return _Runs(starts.astype(np.int32), flat[starts], (pieces.shape[0], pieces.shape[1]), corner)
@@ -42,6 +48,20 @@ class _Runs:
     def pieces(self) -> Pieces:
         size = self.shape[0] * self.shape[1]
         return np.repeat(self.numbers, np.diff(self.starts, append=size)).reshape(self.shape)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outlined:
+    """A slice's one piece without a hole, as its outline."""
+
+    outline: NDArray[np.int32]
+    shape: tuple[int, int]
+    corner: Corner
+
+    def pieces(self) -> Pieces:
+        canvas = np.zeros(self.shape, np.uint8)
+        cv2.drawContours(canvas, [self.outline - np.array(self.corner[::-1], np.int32)], -1, 1, cv2.FILLED)
+        return canvas
 
 
 class LinkedPieces:
@@ -68,7 +88,7 @@ class LinkedPieces:
         self._starts: list[int] = []
         self._sizes: list[FloatArray] = []
         self._labels: list[IntArray] = []
-        self._runs: list[_Runs] = []
+        self._runs: list[_Runs | _Outlined] = []
         self._last: tuple[Pieces, Corner] | None = None
 
     def add(
@@ -78,11 +98,13 @@ class LinkedPieces:
         labels: IntArray | None = None,
         corner: Corner = (0, 0),
         before: tuple[Pieces, Corner] | None = None,
+        outline: NDArray[np.int32] | None = None,
     ) -> None:
         """Take a slice's pieces, numbered 1 … n, the size of each and its label; only equal labels link.
 
         The pieces may be a crop of the slice whose first pixel lies at `corner`; `before` is another crop
-        of the slice before, where the one that was given then was too narrow.
+        of the slice before, where the one that was given then was too narrow. An `outline`, as a
+        `SectionField` has it, says that there is one piece without a hole.
         """
         if before is not None:
             self._last = before
@@ -91,13 +113,15 @@ class LinkedPieces:
         self._parents += range(start, start + len(sizes))
         self._labels.append(np.zeros(len(sizes), dtype=np.int64) if labels is None else labels)
         self._sizes.append(np.asarray(sizes, dtype=np.float64))
-        if self._last is not None and len(sizes):
+        if self._last is not None and len(sizes) and pieces.size and self._last[0].size:
             earlier = self._starts[-2]
-            for a, b in self._linking(*_common(self._last, (pieces, corner))):
+            alone = outline is not None and before is None and isinstance(self._runs[-1], _Outlined)
+            for a, b in self._linking(*_common(self._last, (pieces, corner)), alone=alone):
                 if self._labels[-2][a - 1] == self._labels[-1][b - 1]:
                     self._join(earlier + a - 1, start + b - 1)
         self._last = (pieces, corner)
-        self._runs.append(_Runs.of(pieces, corner))
+        shape = (pieces.shape[0], pieces.shape[1])
+        self._runs.append(_Runs.of(pieces, corner) if outline is None else _Outlined(outline, shape, corner))
 
     def __len__(self) -> int:
         return len(self._runs)
@@ -130,8 +154,13 @@ class LinkedPieces:
         _, first, number = np.unique(roots, return_index=True, return_inverse=True)
         return np.argsort(np.argsort(first))[number] if len(roots) else roots
 
-    def _linking(self, a: Pieces, b: Pieces) -> IntArray:
-        """Return the linked pairs (piece of `a`, piece of `b`) of two slices' common part."""
+    def _linking(self, a: Pieces, b: Pieces, *, alone: bool) -> IntArray:
+        """Return the linked pairs (piece of `a`, piece of `b`) of two slices' common part.
+
+        `alone`: both show one piece, so that one pixel that they share, in a middle row mostly, tells.
+        """
+        if alone and not self._share and len(a) and (a[len(a) // 2] & b[len(b) // 2]).any():
+            return _ONE_PAIR
         pairs, shared = overlaps(a, b)
         if not self._share or not len(pairs):
             return pairs
@@ -163,7 +192,7 @@ def overlaps(a: Pieces, b: Pieces) -> tuple[IntArray, IntArray]:
     if not shared:
         return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
     if a.dtype == b.dtype == np.uint8 and a.max() == b.max() == 1:  # two slices of one piece each
-        return np.ones((1, 2), dtype=np.int64), np.array([shared])
+        return _ONE_PAIR, np.array([shared])
     first, second = a[both].astype(np.int64), b[both].astype(np.int64)
     width = int(second.max()) + 1
     pairs, counts = np.unique(first * width + second, return_counts=True)
@@ -206,16 +235,16 @@ def body_pieces(body: BoolArray) -> BodyPieces:
     >>> found.pieces.shape, found.sizes.tolist(), found.corner, len(found.outline)
     ((2, 5), [10], (2, 3), 10)
     """
-    left, top, width, height = cv2.boundingRect(body.view(np.uint8))
-    crop = body[top : top + height, left : left + width]
-    bits = np.ascontiguousarray(crop).view(np.uint8)
-    if not bits.size:
-        return BodyPieces(bits, np.zeros(0, dtype=np.int64), (top, left))
+    bits = np.ascontiguousarray(body).view(np.uint8)
     chains = single_piece(bits)
+    left, top, width, height = cv2.boundingRect(chains[0] if chains else bits)
+    crop = bits[top : top + height, left : left + width]
+    if not crop.size:
+        return BodyPieces(crop, np.zeros(0, dtype=np.int64), (top, left))
     if not chains:
-        return BodyPieces(*pieces_of(crop), (top, left))
-    outline = chains[0] + np.array([left, top], np.int32) if len(chains) == 1 else None
-    return BodyPieces(bits, np.array([np.count_nonzero(bits)]), (top, left), outline)
+        return BodyPieces(*pieces_of(crop.view(np.bool_)), (top, left))
+    outline = chains[0] if len(chains) == 1 else None
+    return BodyPieces(np.ascontiguousarray(crop), np.array([cv2.countNonZero(crop)]), (top, left), outline)
 
 
 def single_piece(bits: NDArray[np.uint8]) -> list[NDArray[np.int32]]:
@@ -229,7 +258,8 @@ def single_piece(bits: NDArray[np.uint8]) -> list[NDArray[np.int32]]:
     outlines, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     if tree is None or np.count_nonzero(tree[0, :, 3] < 0) != 1:
         return []
-    chains = [np.asarray(outlines[k][:, 0], np.int32) for k in np.argsort(tree[0, :, 3] >= 0, kind="stable")]
+    order = np.argsort(tree[0, :, 3] >= 0, kind="stable") if len(outlines) > 1 else (0,)
+    chains = [np.asarray(outlines[k][:, 0], np.int32) for k in order]
     return [] if any(pinched(bits, chain) for chain in chains) else chains
 
 

@@ -10,10 +10,13 @@ import numpy as np
 
 from stackloft.geometry.curve_stack import CurveStack, fit_curves
 from stackloft.geometry.shoelace import polygon_area
-from stackloft.model.arrays import FloatArray, IntArray
+from stackloft.model.arrays import FloatArray, IntArray, read_only
 from stackloft.model.contour_stack import ContourStack, Loop
 from stackloft.model.errors import InputError
 from stackloft.sectioning.smoothing import smooth_loops
+
+DENSE = 256
+"""Vertices from which on every other one tells a traced loop's smooth curve, whose knots are four apart."""
 
 _READY: WeakKeyDictionary[ContourStack, tuple[tuple[Loop, ...], ...]] = WeakKeyDictionary()
 _CURVES: WeakKeyDictionary[ContourStack, CurveStack] = WeakKeyDictionary()
@@ -87,13 +90,19 @@ def _mirrored(loop: Loop, flip: tuple[float, float]) -> Loop:
 
 
 def _smooth(contours: ContourStack) -> list[Loop]:
-    """Return all loops, smoothed when they were traced."""
+    """Return all loops; traced ones smoothed, no denser than their curves need."""
     flat = [loop for section in contours.sections for loop in section.loops]
     if contours.exact:
         return flat
     known = _SMOOTH.get(contours, {})
     others = iter(smooth_loops([loop for loop in flat if loop not in known], contours.resolution))
-    return [known[loop] if loop in known else next(others) for loop in flat]
+    return [_thinned(known[loop] if loop in known else next(others)) for loop in flat]
+
+
+def _thinned(loop: Loop) -> Loop:
+    if len(loop.points) < DENSE or len(loop.corners):
+        return loop
+    return Loop(read_only(np.ascontiguousarray(loop.points[::2])), loop.corners, loop.hole)
 
 
 def ready_loop(loop: Loop, name: str) -> Loop:

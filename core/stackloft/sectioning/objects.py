@@ -133,7 +133,7 @@ def _linked(segmentation: Segmentation) -> _Linked:
     for index, (picture, look) in enumerate(worked_ahead(len(segmentation), work)):
         window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)
         keeper.take(index, picture, window if len(look.sizes) else None)
-        links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner)
+        links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner, outline=look.outline)
         if not segmentation.labels:
             voids.add(look.body, look.closed, look.framed)
         if look.outline is not None:
@@ -160,10 +160,11 @@ def _view(whole: Segmentation, linked: _Linked, own: BoolArray, notices: tuple[N
     body = BodyField(whole, linked.links, own, linked.voids, first, linked.outlines)
     inner = _void_volume(whole, linked, own)
     told = void_notice(inner, float(linked.links.sizes()[own].sum()), filled=whole.fill_voids)
-    kept = replace(whole.stack, decode=linked.kept)
+    stack = cut_stack(replace(whole.stack, decode=linked.kept), first, last + 1)
     return Segmentation(
-        cut_stack(kept, first, last + 1),
-        body,
+        stack,
+        replace(body, kept=linked.kept) if whole.pointwise else body,
+        known_of=stack.decode if whole.pointwise else None,
         binary=whole.binary,
         notices=(*whole.notices, *notices, *told),
         before=_beyond(body, linked.kept, range(every[0] - 1, first)),
@@ -193,7 +194,7 @@ def _void_volume(whole: Segmentation, linked: _Linked, own: BoolArray) -> float:
     links, voids = linked.links, linked.voids
     voxel, total = _voxel_volumes(whole.stack), 0.0
     for k in range(len(links)):
-        if own[links.of_slice(k)].any() and voids.has_closed(k):
+        if voids.has_closed(k) and own[links.of_slice(k)].any():
             closed, (row, column) = voids.closed(k)
             window = (slice(row, row + closed.shape[0]), slice(column, column + closed.shape[1]))
             pieces, corner = links.pieces(k)

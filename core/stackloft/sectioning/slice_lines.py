@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
@@ -78,6 +79,8 @@ class Grid:
     first: tuple[int, int]
     """(row, column) of the field's first pixel in the slice."""
     lines: list[Line]
+    noise: NoiseFloor | None = None
+    """What noise still adds to empty pixels of the field."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +127,8 @@ def _quick_grid(section: SectionField) -> Grid | None:
         lines = [line_around(chain)]
     if lines is None:
         return None
-    return Grid(section.values, section.level, section.offset, [Line(crossings) for crossings in lines])
+    found = [Line(crossings) for crossings in lines]
+    return Grid(section.values, section.level, section.offset, found, section.noise)
 
 
 def _bordered_grid(section: SectionField) -> Grid:

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.sectioning.marching_squares import Crossings
 
@@ -48,6 +49,8 @@ class LevelLine:
     field: NDArray[Any]
     """(rows, columns), of any real dtype"""
     level: float
+    noise: NoiseFloor | None = None
+    """What noise still adds to empty pixels of the field."""
 
 
 def crossing_points(line: Crossings, field: NDArray[Any], level: float = 0.0) -> FloatArray:
@@ -113,7 +116,8 @@ def _around(line: LevelLine) -> FloatArray:
     base = line.crossings.row * width + line.crossings.column
     at = offsets.take(line.crossings.down.view(np.int8), axis=1)
     at += base
-    return line.field.ravel().take(at).astype(np.float64)
+    values = line.field.ravel().take(at)
+    return values.astype(np.float64) if line.noise is None else line.noise.taken_off(values)
 
 
 def _refine(fraction: FloatArray, samples: FloatArray, fine: NDArray[np.bool_], starts: IntArray) -> None:
@@ -127,14 +131,16 @@ def _refine(fraction: FloatArray, samples: FloatArray, fine: NDArray[np.bool_], 
     blur = _ramp(_sharpness(samples, clean, starts), _BLURRED, _SHARP)
     chosen = np.flatnonzero(clean & fine)
     a, b, c, d = samples[:, chosen]
-    cubic = _cubic_crossing(a, b, c, d, fraction[chosen])
     rise = a - d
     means = (a + b + c) / rise
     off_middle = np.abs(a + d) / (2.0 * np.abs(rise))
     sharp = np.repeat(blur, np.diff(starts, append=len(clean)))[chosen]
     share = sharp * _ramp(-off_middle, -_OFF, -_NEARLY_OFF)
-    near = (means >= -_BEYOND) & (means <= 1 + _BEYOND)
-    fraction[chosen] = np.where(near, share * means + (1 - share) * cubic, cubic)
+    share[(means < -_BEYOND) | (means > 1 + _BEYOND)] = 0.0
+    rest = np.flatnonzero(share < 1.0)  # few, where the picture is sharp
+    cubic = _cubic_crossing(a[rest], b[rest], c[rest], d[rest], fraction[chosen[rest]])
+    means[rest] = np.where(share[rest] > 0.0, share[rest] * means[rest] + (1 - share[rest]) * cubic, cubic)
+    fraction[chosen] = means
 
 
 def _sharpness(samples: FloatArray, clean: NDArray[np.bool_], starts: IntArray) -> FloatArray:
@@ -155,7 +161,7 @@ def _cubic_crossing(
     for _ in range(_NEWTON_STEPS):
         slope = linear + t * (2 * square + 3 * t * cube)
         value = b + t * (linear + t * (square + t * cube))
-        t = np.clip(t - np.divide(value, slope, out=np.zeros_like(t), where=slope != 0), 0.0, 1.0)
+        t = np.clip(t - value / np.where(slope != 0.0, slope, np.inf), 0.0, 1.0)
     return t
 
 

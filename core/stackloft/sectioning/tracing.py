@@ -90,7 +90,7 @@ def trace_fields(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[Trac
     sorted_out = [sorted_lines(one, rules) for one in slices]
     lines = [(line, one) for one in sorted_out for line in (*one.kept, *one.real, *one.perhaps)]
     points = points_of_lines(
-        [LevelLine(line.crossings, one.grid.field, one.grid.level) for line, one in lines]
+        [LevelLine(line.crossings, one.grid.field, one.grid.level, one.grid.noise) for line, one in lines]
     )
     loops = iter(_loops(points, lines))
     return [_traced(one, loops, rules) for one in sorted_out]
@@ -116,10 +116,15 @@ def _left_out(share: float, name: str) -> Notice:
 
 def _sides(line: Line, grid: Grid, shape: tuple[int, int]) -> list[str]:
     """Return the picture's edges that a line runs along: it is closed between them and the last pixels."""
-    at = line.rough + np.array(grid.first[::-1])
-    (left, top), (right, bottom) = at.min(axis=0), at.max(axis=0)
+    x, y = line.rough[:, 0], line.rough[:, 1]
+    row, column = grid.first
     rows, columns = shape
-    found = {"top": top < 0, "bottom": bottom > rows - 1, "left": left < 0, "right": right > columns - 1}
+    found = {
+        "top": y.min() + row < 0,
+        "bottom": y.max() + row > rows - 1,
+        "left": x.min() + column < 0,
+        "right": x.max() + column > columns - 1,
+    }
     return [side for side in SIDES if found[side]]
 
 
@@ -129,12 +134,16 @@ def _loops(pixels: list[FloatArray], lines: Sequence[tuple[Line, SortedLines]]) 
         return []
     counts = np.array([len(points) for points in pixels])
     starts = np.cumsum(counts) - counts
-    first = np.array([one.grid.first[::-1] for _, one in lines])
-    spacing = np.array([one.slice.spacing[::-1] for _, one in lines])
-    points = (np.concatenate(pixels) + np.repeat(first, counts, axis=0)) * np.repeat(spacing, counts, axis=0)
-    before = np.concatenate([points[:1], points[:-1]])
-    before[starts] = points[starts + counts - 1]
-    apart = np.abs(points - before).max(axis=1) > np.repeat(1e-9 * spacing.max(axis=1), counts)
+    spacing = np.array([one.slice.spacing for _, one in lines])
+    points = np.concatenate(pixels)
+    steps = np.empty((2, len(points)))
+    for axis in (0, 1):  # a coordinate at a time: rows of two take several times as long
+        place = points[:, axis]
+        place += np.repeat([float(one.grid.first[1 - axis]) for _, one in lines], counts)
+        place *= np.repeat(spacing[:, 1 - axis], counts)
+        np.subtract(place[1:], place[:-1], out=steps[axis, 1:])
+        steps[axis, starts] = place[starts] - place[starts + counts - 1]
+    apart = np.abs(steps).max(axis=0) > np.repeat(1e-9 * spacing.max(axis=1), counts)
     kept = points if apart.all() else points[apart]
     cuts = np.cumsum(np.add.reduceat(apart, starts, dtype=np.int64))[:-1]
     return [

@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, pieces_of
 
@@ -101,12 +101,16 @@ def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
 
     The disc's closing of the body is the complement of the background's opening.
     """
-    if bits[0].any() or bits[-1].any() or bits[:, 0].any() or bits[:, -1].any():
+    if any(edge.any() for edge in _strips(bits, 1)):
         return False
     if not solid and _has_holes(np.ascontiguousarray(bits)):
         return False
-    around = (2 * CRACK,) * 4
-    framed = cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0)
+    framed = bits
+    if any(edge.any() for edge in _strips(bits, 2 * CRACK)):
+        around = (2 * CRACK,) * 4
+        framed = np.asarray(
+            cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0), np.uint8
+        )
     wide = cv2.dilate(framed, _DISC)
     if _has_holes(wide):
         return False
@@ -116,9 +120,18 @@ def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
     return bool(pieces_of(cracks > 0, connectivity=8)[1].max() < _FEWEST)
 
 
+def _strips(bits: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], ...]:
+    """Return the outermost rows and columns."""
+    return bits[:width], bits[-width:], bits[:, :width], bits[:, -width:]
+
+
 def _has_holes(bits: cv2.typing.MatLike) -> bool:
     _, tree = cv2.findContours(bits, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
     return tree is not None and bool((tree[0, :, 3] >= 0).any())
+
+
+_OUTSIDE_ALONE: FloatArray = np.array([_ENDLESS])
+_NOWHERE: BoolArray = np.zeros((0, 0), dtype=np.bool_)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,32 +178,40 @@ class VoidFinder:
         self._links = LinkedPieces(CONTINUED)
         self._outside: list[BoolArray] = []
         self._closed: BoolArray | None = None
+        self._showing: frozenset[int] | None = None
         self._last: _Slice | None = None
 
     def add(self, body: BoolArray, closed: Pieces | None, corner: Corner = (0, 0)) -> None:
         """Take a slice: True where any body is, on a window of it, and its `closed_background`."""
         now, before = _Slice(body, closed, corner), self._last
+        if closed is None and (before is None or before.closed is None):  # as on most slices
+            self._links.add(_NOWHERE, _OUTSIDE_ALONE, None, corner)
+            self._outside.append(_OUTSIDE_ALONE > 0.0)
+            self._last = now
+            return
         sizes = np.bincount(closed.ravel())[1:] if closed is not None else np.zeros(0)
-        numbers, place, anew = np.zeros((0, 0), np.uint8), corner, None
-        if closed is not None or (before is not None and before.closed is not None):
-            window = _around(now, before or now)
-            numbers, place = now.numbered(window), window[:2]
-            anew = (before.numbered(window), place) if before is not None else None
-        self._links.add(numbers, np.concatenate([[_ENDLESS], sizes]), None, place, anew)
+        window = _around(now, before or now)
+        anew = (before.numbered(window), window[:2]) if before is not None else None
+        every = np.concatenate([[_ENDLESS], sizes])
+        self._links.add(now.numbered(window), every, None, window[:2], anew)
         self._outside.append(np.arange(1 + len(sizes)) == 0)
         self._last = now
 
     def closed(self, number: int) -> tuple[BoolArray, Corner]:
         """Return the pixels of a crop of slice `number` that lie in a void, and the crop's corner."""
+        if not self.has_closed(number):
+            return _NOWHERE, (0, 0)
         own = self._pieces()[self._links.of_slice(number)]
-        if not own.any():
-            return np.zeros((0, 0), dtype=np.bool_), (0, 0)
         pieces, corner = self._links.pieces(number)
         return np.concatenate([[False], own])[pieces], corner
 
     def has_closed(self, number: int) -> bool:
         """Return whether slice `number` shows any void."""
-        return bool(self._pieces()[self._links.of_slice(number)].any())
+        if self._showing is None:
+            every, closed = range(len(self._links)), self._pieces()
+            several = bool(closed.any())
+            self._showing = frozenset(k for k in every if several and closed[self._links.of_slice(k)].any())
+        return number in self._showing
 
     def _pieces(self) -> BoolArray:
         """Return whether each piece of background belongs to a void."""

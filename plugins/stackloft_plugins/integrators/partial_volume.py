@@ -19,6 +19,7 @@ import numpy as np
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
+from stackloft.geometry.median import median
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
@@ -31,12 +32,15 @@ from stackloft_plugins.integrators.seen_slice import Mask, SeenSlice
 
 _RING = 4
 """px: width of the rings beside the edge zone from which the two grey levels are taken."""
+_NAN = float("nan")
 _ENOUGH = 20
 """Pixels in a ring for its level to count."""
 _FEW = 4
 """Likewise of the innermost pixels of a thin body."""
-_BEYOND, _EDGE, _WITHIN = 1, 2, 3
-"""Zones around the boundary, by how many of the outer ring, the edge zone and the inside hold a pixel."""
+_LARGE = 40_000
+"""Pixels of a crop from which on a quarter of the rings tells their levels as well."""
+_TELLING = 100
+"""Slices of a scan, evenly from first to last, that tell the two levels of all: more are no surer."""
 MOST_EXCESS = 0.02
 """Part of the volume by which an edge zone's pixels may be more than full: a skin so bright is no edge."""
 _OUTLIER = 6.0
@@ -49,10 +53,10 @@ class PartialVolume:
 
     Assumes that grey is proportional to the filled fraction of a pixel (and of a slab, for scans) and that
     blur keeps within ``zone`` pixels of the edge; the two levels are those of rings on either side of that
-    zone, per slice for photographs, over all slices for scans. No threshold enters, so that slabs that are
-    filled to less than a half count too, those beyond the outermost contours among them. Errs with a skin of
-    another grey than the flesh below it: by its thickness times the relative difference; refuses one so much
-    brighter that pixels inside would be more than full by 2 % of the volume. Gives no area.
+    zone, per slice for photographs, over some hundred slices for scans. No threshold enters, so that slabs
+    that are filled to less than a half count too, those beyond the outermost contours among them. Errs with a
+    skin of another grey than the flesh below it: by its thickness times the relative difference; refuses one
+    so much brighter that pixels inside would be more than full by 2 % of the volume. Gives no area.
     Across photographs (faces) it errs as Cavalieri's rule does. Of a label map it is the sum of voxels.
     """
 
@@ -101,6 +105,8 @@ class _SliceSums:
 class _CoverageSink:
     """Sums each slice when the one after it is there."""
 
+    looks_at_pictures = False
+
     def __init__(self, zone: int) -> None:
         self._zone = zone
 
@@ -111,6 +117,8 @@ class _CoverageSink:
         self._before: SeenSlice | None = None
         self._current: SeenSlice | None = None
         self._sums: list[_SliceSums] = []
+        slices = len(segmentation.before) + len(segmentation) + len(segmentation.after)
+        self._telling = max(1, slices // _TELLING) if self._slab else 1
         for beyond in segmentation.before:
             self._take(self._seen(beyond.field()))
 
@@ -138,7 +146,8 @@ class _CoverageSink:
             self._sums.append(_counted(self._current))
         elif self._current is not None:
             beside = (self._before, seen) if self._slab else (self._current, self._current)
-            self._sums.append(_sums(self._current, beside, self._zone))
+            tells = len(self._sums) % self._telling == 0
+            self._sums.append(_sums(self._current, beside, self._zone, tells=tells))
         self._before, self._current = self._current, seen
 
     def _covered(self) -> FloatArray:
@@ -168,8 +177,7 @@ class _CoverageSink:
 
 def _counted(current: SeenSlice) -> _SliceSums:
     """Return what one slice of a label map adds: its voxels."""
-    nan = float("nan")
-    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, 0, 0.0, nan, nan, nan)
+    return _SliceSums(int(np.count_nonzero(current.body)), 0, 0.0, 0, 0.0, _NAN, _NAN, _NAN)
 
 
 def _check_edge(filled: FloatArray, pixels: FloatArray, volume: float) -> None:
@@ -185,21 +193,21 @@ def _check_edge(filled: FloatArray, pixels: FloatArray, volume: float) -> None:
         )
 
 
-def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int) -> _SliceSums:
-    """Return what one slice adds, given its neighbours (itself, where they do not matter)."""
+def _sums(
+    current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int, *, tells: bool
+) -> _SliceSums:
+    """Return what one slice adds, given its neighbours (itself, where they do not matter).
+
+    The grey levels are NaN unless it `tells` them.
+    """
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside = _eroded(common, zone)
-    deep = _eroded(inside, _RING)
-    near = cv2.dilate(united, _disc(zone))
-    wide = cv2.dilate(near, _disc(_RING))
-    where = np.flatnonzero((wide > deep).view(np.bool_))  # around the boundary alone
-    zones = (inside + near + wide).ravel()[where]
-    grey = current.relative(where)
-    edge, body = grey[zones == _EDGE], _level(grey[zones == _WITHIN])
-    full = grey[(zones == _EDGE) & common.ravel()[where].view(np.bool_)]
-    background = _mean_level(grey[zones == _BEYOND])
+    inside, near = _eroded(common, _disc(zone)), _dilated(united, _disc(zone))
+    between = (inside ^ near).view(np.bool_)
+    edge = current.section.relative_where(between)
+    full = edge[common[between].view(np.bool_)]
+    body, background = _ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
@@ -208,29 +216,44 @@ def _sums(current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None],
         full_grey=float(full.sum()),
         body=body,
         background=background,
-        near=_innermost(current, common) if np.isnan(body) else body,
+        near=_innermost(current, common) if tells and np.isnan(body) else body,
     )
+
+
+def _ring_levels(section: SectionField, inside: Mask, near: Mask) -> tuple[float, float]:
+    """Return the levels of the rings beside the edge zone; of large ones every fourth pixel is seen."""
+    step = 2 if inside.size > _LARGE else 1
+    seen = section.every(step) if step > 1 else section
+    inside, near = (np.ascontiguousarray(mask[::step, ::step]) for mask in (inside, near))
+    ring = np.ones((2 * (_RING // step) + 1,) * 2, np.uint8)
+    within = (inside ^ _eroded(inside, ring)).view(np.bool_)
+    beyond = (near ^ _dilated(near, ring)).view(np.bool_)
+    return _level(seen.relative_where(within)), _mean_level(seen.relative_where(beyond))
 
 
 def _innermost(current: SeenSlice, common: Mask) -> float:
     """Return the level of a thin body's innermost pixels."""
-    return _level(current.relative(np.flatnonzero(_eroded(common, 1))), _FEW)
+    return _level(current.section.relative_where(_eroded(common, _disc(1)).view(np.bool_)), _FEW)
 
 
-def _eroded(mask: Mask, depth: int) -> Mask:
-    return np.asarray(cv2.erode(mask, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
+def _eroded(mask: Mask, by: Mask) -> Mask:
+    return np.asarray(cv2.erode(mask, by, borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
+
+
+def _dilated(mask: Mask, by: Mask) -> Mask:
+    return np.asarray(cv2.dilate(mask, by), np.uint8)
 
 
 def _mean_level(values: FloatArray) -> float:
     """Return the mean without outliers: it is a sum that it is taken off from, and noise may be skewed."""
     if len(values) < _ENOUGH:
         return float("nan")
-    off = np.abs(values - np.median(values))
-    return float(values[off <= _OUTLIER * 1.4826 * float(np.median(off))].mean())
+    off = np.abs(values - median(values))
+    return float(values[off <= _OUTLIER * 1.4826 * median(off)].mean())
 
 
 def _level(values: FloatArray, enough: int = _ENOUGH) -> float:
-    return float(np.median(values)) if len(values) >= enough else float("nan")
+    return median(values) if len(values) >= enough else float("nan")
 
 
 @lru_cache

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.model.segmentation import SectionField
 
 Mask = NDArray[np.uint8]
@@ -44,9 +43,3 @@ class SeenSlice:
         """Top, left, bottom, right."""
         row, column = self.section.offset
         return row, column, row + self.body.shape[0], column + self.body.shape[1]
-
-    def relative(self, where: IntArray) -> FloatArray:
-        """Return the field above its level at the pixels with these numbers, row after row."""
-        local = self.section.local_levels
-        level = self.section.level if local is None else local.ravel()[where]
-        return np.asarray(self.section.values.ravel()[where].astype(np.float64) - level)

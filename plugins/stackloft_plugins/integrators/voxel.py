@@ -50,6 +50,8 @@ class Voxel:
 class _VoxelSink:
     """Counts."""
 
+    looks_at_pictures = False
+
     def begin(self, segmentation: Segmentation) -> None:
         self._segmentation = segmentation
         self._counts = np.zeros(len(segmentation))

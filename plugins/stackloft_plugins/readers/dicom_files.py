@@ -66,6 +66,8 @@ def walked(source: Path, most_folders: int | None = None) -> Iterator[Path]:
 
 def _refuse_pretenders(every: list[Path], found: tuple[Path, ...]) -> None:
     """Refuse files that are named as the DICOM files beside them and hold no DICOM."""
+    if len(found) == len(every):
+        return
     known = set(found)
     suffixes = {(path.parent, path.suffix.lower()) for path in found}
     for path in every:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,7 @@ class Lookup:
         if value is None:
             return None
         numbers = np.array(value, dtype=np.float64).reshape(-1)
-        if numbers.shape != (count,) or not np.isfinite(numbers).all():
+        if numbers.shape != (count,) or not all(map(math.isfinite, numbers.tolist())):
             message = f"{keyword} is no {count} finite numbers"
             raise ValueError(message)
         return numbers

@@ -11,7 +11,7 @@ from pathlib import Path
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft_plugins.readers.dicom_files import walked
-from stackloft_plugins.readers.dicom_sniff import begins_as_dicom
+from stackloft_plugins.readers.dicom_sniff import begins_as_dicom, first_bytes
 
 RTSTRUCT, SEGMENTATION = "RTSTRUCT", "SEG"
 _HEAD = 2048
@@ -38,8 +38,7 @@ def object_kind(path: Path) -> str:
     'RTSTRUCT'
     """
     try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
+        head = first_bytes(path, _HEAD)
     except OSError:
         return ""
     if not begins_as_dicom(head):
@@ -95,5 +94,4 @@ def without_objects(files: tuple[Path, ...]) -> tuple[tuple[Path, ...], tuple[No
 
 
 def _is_dicom(path: Path) -> bool:
-    with path.open("rb") as stream:
-        return begins_as_dicom(stream.read(_HEAD))
+    return begins_as_dicom(first_bytes(path, _HEAD))

@@ -46,7 +46,7 @@ def decode_frame(frame: Frame) -> Picture:
         return read_only(_looked_up(grey, data, frame))
     if frame.inverted and not frame.rescaled:
         grey = (sum(frame.stored) - grey.astype(np.int64)).astype(grey.dtype)
-    return read_only(rescaled(grey, frame.slope, frame.intercept))
+    return read_only(rescaled(grey, frame.slope, frame.intercept, own=plain is not None))
 
 
 def without_padding(stored: NDArray[Any], padding: tuple[int, int] | None) -> NDArray[Any]:
@@ -65,8 +65,10 @@ def without_padding(stored: NDArray[Any], padding: tuple[int, int] | None) -> ND
     return np.where(padded, stored[~padded].min(), stored)
 
 
-def rescaled(stored: NDArray[Any], slope: float, intercept: float) -> NDArray[Any]:
+def rescaled(stored: NDArray[Any], slope: float, intercept: float, *, own: bool = False) -> NDArray[Any]:
     """Return slope · stored + intercept; whole numbers stay whole (16 bit where they fit), others float.
+
+    `own`: nobody else needs `stored`, so that it may be changed.
 
     Examples
     --------
@@ -89,7 +91,8 @@ def rescaled(stored: NDArray[Any], slope: float, intercept: float) -> NDArray[An
         if not narrow:
             return stored.astype(np.int32) + np.int32(shift)
         short = stored.view(np.int16) if stored.dtype.itemsize == 2 else stored.astype(np.int16)
-        return short + np.int16(shift)  # uint16 that wraps round comes back by the shift
+        # uint16 that wraps round comes back by the shift
+        return np.asarray(np.add(short, np.int16(shift), out=short if own else None))
     wide = np.float32 if stored.dtype.itemsize <= 2 else np.float64
     values = stored.astype(np.float64) * slope + intercept
     return values.astype(wide)

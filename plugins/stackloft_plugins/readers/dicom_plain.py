@@ -23,6 +23,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft_plugins.readers.dicom_sniff import first_bytes
+
 EXPLICIT_LITTLE = "1.2.840.10008.1.2.1"
 _HEADER = 1 << 15
 """Bytes looked at; a longer header is not plain."""
@@ -107,8 +109,7 @@ def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
     OSError
         The file cannot be opened.
     """
-    with path.open("rb", buffering=0) as stream:
-        head = stream.read(_HEADER)
+    head = first_bytes(path, _HEADER)
     if head[128:132] != b"DICM":
         return None
     wanted = _tags(keywords)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
-
-import numpy as np
 
 
 def number_of(value: Any) -> float | None:
     """Return a finite number, or None."""
     number = None if value in {None, ""} else float(value)
-    return number if number is not None and np.isfinite(number) else None
+    return number if number is not None and math.isfinite(number) else None
 
 
 def positive_of(value: Any) -> float | None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stackloft.geometry.noise_floor import without_floor
+from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import read_only
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
@@ -104,7 +104,7 @@ def _field(stack: SliceStack, rules: SlabRules) -> tuple[_Level | _Window, str, 
     level = found.level if rules.threshold is None else rules.threshold
     told = f"{level:.5g}, as given" if given else f"{level:.5g}, {rules.method} {from_sample}"
     sign = 1.0 if found.body_above else -1.0
-    return _Level(level, sign, rules.channel, found.noise_floor, found.no_signal), told, found
+    return _Level(level, sign, rules.channel, found.noise), told, found
 
 
 def _between(low: float, high: float, channel: str) -> _Level | _Window:
@@ -123,18 +123,14 @@ class _Level:
     level: float
     sign: float
     channel: str
-    noise_floor: float = 0.0
-    no_signal: float = 0.0
+    noise: NoiseFloor | None = None
 
     def __call__(self, picture: Picture, said: float | None) -> SectionField:
         level = self.level if said is None else said
-        if self.noise_floor > 0.0:
-            grey = without_floor(grey_levels(picture, self.channel), self.no_signal, self.noise_floor)
-            return SectionField(read_only(grey), level, threshold=level)
         if self.sign > 0.0 and picture.ndim == 2:
-            return SectionField(read_only(picture), level, threshold=level)
+            return SectionField(read_only(picture), level, threshold=level, noise=self.noise)
         grey = self.sign * grey_levels(picture, self.channel)
-        return SectionField(read_only(grey), self.sign * level, threshold=level)
+        return SectionField(read_only(grey), self.sign * level, threshold=level, noise=self.noise)
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +154,11 @@ class _Masked:
 
     stack: SliceStack
     field: _Level | _Window
+
+    @property
+    def pointwise(self) -> bool:
+        """True where nobody has drawn a mask, which is of whole slices."""
+        return not any("mask" in said for said in self.stack.hints.slices.values())
 
     def __call__(self, number: int, picture: Picture) -> SectionField:
         said: Mapping[str, Any] = self.stack.hints.slices.get(number + 1, {})

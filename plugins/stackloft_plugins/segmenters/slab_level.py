@@ -15,14 +15,16 @@ Where noise lifts the background (`geometry.noise_floor`), the level is half-way
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, noise_floor
+from stackloft.geometry.median import median
+from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, NoiseFloor, noise_floor
+from stackloft.model.arrays import BoolArray
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
@@ -34,8 +36,10 @@ Levels = NDArray[Any]
 """(rows, columns) grey levels of any real dtype."""
 SAMPLED = 24
 """Slices looked at."""
-_NEAR, _FAR = 3.0, 10.0  # pixels
+_DEEP, _THIN = (3, 10), (1, None)  # pixels from the boundary
 _ROUNDS = 3
+_POOLED = 1 << 14
+"""Pixels of a slice that its histogram needs."""
 _FAINT = 4.0  # standard deviations of noise
 
 
@@ -45,10 +49,8 @@ class SlabLevel:
 
     level: float
     body_above: bool
-    noise_floor: float = 0.0
-    """Grey levels by which noise lifts the background above no signal."""
-    no_signal: float = 0.0
-    """Grey level without it."""
+    noise: NoiseFloor | None = None
+    """What noise adds to empty pixels, where it does."""
     notices: tuple[Notice, ...] = ()
 
 
@@ -86,7 +88,7 @@ def slab_level(
 
 
 def pooled_sample(stack: SliceStack, channel: str, sampled: int) -> Grey:
-    """Return the grey levels of every fourth pixel of a sample of slices, (n)."""
+    """Return the grey levels of every fourth pixel of a sample of slices, of large ones fewer, (n)."""
     return _pooled(_sample(stack, channel, sampled))
 
 
@@ -103,67 +105,95 @@ def _levels(picture: Picture, channel: str) -> Levels:
 
 
 def _pooled(sample: list[Levels]) -> Grey:
-    return np.concatenate([grey[::2, ::2].ravel().astype(np.float32) for grey in sample])
+    step = max(2, math.isqrt(sample[0].size // _POOLED))
+    return np.concatenate([grey[::step, ::step].ravel() for grey in sample]).astype(np.float32)
 
 
 def _half_way(sample: list[Levels], level: float, *, above: bool, where: str) -> SlabLevel:
     sign = 1.0 if above else -1.0
+    whole = all(grey.dtype.kind in "iu" for grey in sample)
     for _ in range(_ROUNDS):
+        last = level
         inside, outside = _bands(sample, level, sign)
         if not inside.size or not outside.size:
             raise InputError("no boundary between a body and its background", where=where,
                              fix="give --set segmenter.threshold=LEVEL")  # fmt: skip
-        body, air = float(np.median(inside)), float(np.median(outside))
+        body, air = median(inside), median(outside)
         floor = noise_floor(outside) if above else 0.0
         level = 0.5 * (body + air - floor * MEDIAN / MEAN)
-    noise = 1.4826 * float(np.median(np.abs(outside - air)))
+        if level == last or (whole and _same_side(level, last)):
+            break  # the bands would be the same again
+    noise = 1.4826 * median(np.abs(outside - np.float32(air)))
     step = abs(body - air)
     dark = air - floor * MEDIAN / MEAN
     if not above or level - dark < 2.0 * EMPTY * floor:
         floor = 0.0
+    found = SlabLevel(level, above, NoiseFloor.over(dark, floor))
     if step > _FAINT * noise:
-        return SlabLevel(level, above, floor, dark)
+        return found
     text = f"{where}: body and background differ by {step:.3g} grey levels, noise {noise:.2g}; look there"
-    return SlabLevel(level, above, floor, dark, (Notice("low-contrast", text),))
+    return replace(found, notices=(Notice("low-contrast", text),))
 
 
-def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Grey, Grey]:
+def _same_side(level: float, other: float) -> bool:
+    """Return whether two levels part whole numbers alike."""
+    return math.floor(level) == math.floor(other) and math.ceil(level) == math.ceil(other)
+
+
+def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Levels, Levels]:
     """Return the grey levels in the bands within and beyond the boundaries; nearer where bodies are thin."""
-    found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign)))
-    deep, thin, outside = (np.concatenate(bands) for bands in zip(*found, strict=True))
-    return deep if deep.size else thin, outside
+    inside, outside = _gathered(sample, level, sign, _DEEP)
+    return (inside if inside.size else _gathered(sample, level, sign, _THIN)[0]), outside
 
 
-def _slice_bands(grey: Levels, level: float, sign: float) -> tuple[Grey, Grey, Grey]:
-    """Return the levels in the band within, in all of the body but its rim, and in the band beyond."""
+def _gathered(
+    sample: list[Levels], level: float, sign: float, within: tuple[int, int | None]
+) -> tuple[Levels, Levels]:
+    found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign, within)))
+    inside, outside = (np.concatenate(bands) for bands in zip(*found, strict=True))
+    return inside, outside
+
+
+def _slice_bands(
+    grey: Levels, level: float, sign: float, within: tuple[int, int | None]
+) -> tuple[Levels, Levels]:
+    """Return the levels in the band within, and in the band beyond."""
     if grey.dtype.kind in "iu":
         mask = (grey > math.floor(level) if sign > 0.0 else grey < math.ceil(level)).view(np.uint8)
     else:
         mask = (grey > level if sign > 0.0 else grey < level).view(np.uint8)
     if not mask.any() or mask.all():
-        empty = np.zeros(0, dtype=np.float32)
-        return empty, empty, empty
+        return grey[:0, 0], grey[:0, 0]
     window = _window(mask)
     grey, mask = grey[window], np.ascontiguousarray(mask[window])
-    within, beyond = _distance(mask), _distance(1 - mask)
-    bands = (within > _NEAR) & (within <= _FAR), within > 1, (beyond > _NEAR) & (beyond <= _FAR)
-    inside, thin, outside = (grey[band].astype(np.float32) for band in bands)
-    return inside, thin, outside
+    inside, outside = _band(mask, within), _band(1 - mask, _DEEP)
+    return grey[inside], grey[outside]
+
+
+def _band(mask: cv2.typing.MatLike, within: tuple[int, int | None]) -> BoolArray:
+    """Return the pixels of a mask further from its boundary than the one distance, no further than the other.
+
+    Distances are those of chessboards, never more than true ones: squares take a tenth of the time of discs.
+    """
+    near, far = within
+    band = _eroded(mask, near)
+    return (band if far is None else band ^ _eroded(mask, far)).view(np.bool_)
+
+
+def _eroded(mask: cv2.typing.MatLike, reach: int) -> NDArray[np.uint8]:
+    square = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    return np.asarray(cv2.erode(mask, square, borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
 
 
 def _window(mask: cv2.typing.MatLike) -> tuple[slice, slice]:
-    """Return the rows and columns of the body and all within `_FAR` pixels of it."""
+    """Return the rows and columns of the body and all as far beyond it as the band reaches."""
     left, top, width, height = cv2.boundingRect(mask)
-    room = math.ceil(_FAR) + 2
+    room = _DEEP[1] + 2
     rows, columns = mask.shape
     return (
         slice(max(0, top - room), min(rows, top + height + room)),
         slice(max(0, left - room), min(columns, left + width + room)),
     )
-
-
-def _distance(mask: cv2.typing.MatLike) -> Grey:
-    return np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, 3), dtype=np.float32)
 
 
 def frame_of(grey: Levels) -> Grey:
