@@ -125,12 +125,17 @@ class Segmentation:
         """Whether the field of a part of a picture is that part of its field, but for the offset."""
         return bool(getattr(self.field_of, "pointwise", False))
 
+    @property
+    def knows_its_pictures(self) -> bool:
+        """Whether `field_of` takes empty pictures."""
+        return self.known_of is not None and self.known_of is self.stack.decode
+
     def __len__(self) -> int:
         return len(self.stack)
 
     def field_at(self, index: int) -> SectionField:
         """Return the field of slice `index`, decoding no more of its picture than the field needs."""
-        if self.known_of is not None and self.known_of is self.stack.decode:
+        if self.knows_its_pictures:
             return self.field_of(index, np.zeros((0, 0), np.uint8))
         decode = self.stack.luminance if self.luminance_alone else self.stack.decode
         return self.field_of(index, decode(index))
