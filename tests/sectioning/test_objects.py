@@ -10,9 +10,10 @@ from stackloft.model.errors import InputError, UsageError
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import SectionKind, SliceStack
 from stackloft.sectioning.contour_sink import trace_stack
-from stackloft.sectioning.linked_pieces import LinkedPieces, body_pieces, pieces_of
+from stackloft.sectioning.linked_pieces import LinkedPieces
 from stackloft.sectioning.object_choice import one_object
 from stackloft.sectioning.objects import find_objects
+from stackloft.sectioning.slice_pieces import body_pieces, pieces_of
 
 
 def scan(volume, **options):

@@ -14,7 +14,8 @@ from stackloft.model.scale import scale_of_slices
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Hints, Picture, SliceStack
 from stackloft.sectioning.kept_slices import KeptSlices
-from stackloft.sectioning.linked_pieces import Corner, LinkedPieces
+from stackloft.sectioning.linked_pieces import LinkedPieces
+from stackloft.sectioning.slice_pieces import Corner
 from stackloft.sectioning.voids import VoidFinder
 
 MARGIN = 12

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.model.arrays import IntArray
-from stackloft.sectioning.linked_pieces import pinched
 from stackloft.sectioning.marching_squares import Crossings
+from stackloft.sectioning.slice_pieces import pinched
 
 _DIRECTION = np.array([5, 6, 7, 4, -1, 0, 3, 2, 1])
 """By 3·(1 + dy) + 1 + dx; y runs down, so that numbers run clockwise from the right."""

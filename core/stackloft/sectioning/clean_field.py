@@ -13,8 +13,8 @@ import numpy as np
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.segmentation import SectionField
-from stackloft.sectioning.linked_pieces import pinched
 from stackloft.sectioning.slice_lines import TraceRules
+from stackloft.sectioning.slice_pieces import pinched
 
 
 def cleaned(section: SectionField, *, labels: bool, rules: TraceRules | None = None) -> SectionField:

@@ -6,7 +6,8 @@ import numpy as np
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.slice_stack import SliceStack
-from stackloft.sectioning.linked_pieces import LinkedPieces, Pieces, pieces_of
+from stackloft.sectioning.linked_pieces import LinkedPieces
+from stackloft.sectioning.slice_pieces import Pieces, pieces_of
 from stackloft.sectioning.touching_bodies import Labels, basins, on_window, stride_for
 from stackloft.sectioning.voids import VoidFinder
 

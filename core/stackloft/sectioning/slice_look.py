@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import BoolArray, IntArray
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture
-from stackloft.sectioning.linked_pieces import Corner, Pieces, body_pieces, pieces_of
+from stackloft.sectioning.slice_pieces import Corner, Pieces, body_pieces, pieces_of
 from stackloft.sectioning.voids import CRACK, closed_background
 
 FRAME = 2 * CRACK + 1

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
-from stackloft.sectioning.linked_pieces import Corner, Pieces
+from stackloft.sectioning.slice_pieces import Corner, Pieces
 
 MOST_VOXELS = 6_000_000
 """Voxels that the distances are worked out on; larger bodies are looked at coarser."""

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
-from stackloft.sectioning.linked_pieces import Corner, LinkedPieces, Pieces, pieces_of
+from stackloft.sectioning.linked_pieces import LinkedPieces
+from stackloft.sectioning.slice_pieces import Corner, Pieces, pieces_of
 
 CONTINUED = 0.5
 """Least part of the smaller of two pieces of background that makes them one across slices."""
