@@ -50,8 +50,9 @@ def test_volume_and_area_are_those_of_the_exact_contours(tmp_path, seed, origin)
     write_phantom("potato", "rtstruct", tmp_path / "rs", sections=9, cosines=seed, origin=origin)
     exact = stackloft.measure(tmp_path / "csv").objects[0]
     found = stackloft.measure(tmp_path / "rs").objects[0]
-    assert found.volume.value == pytest.approx(exact.volume.value, rel=1e-6)
-    assert found.area.value == pytest.approx(exact.area.value, rel=1e-6)
+    turned = 1e-6 if seed is None else 1e-5  # about the axis: the 33 points lie elsewhere on each loop
+    assert found.volume.value == pytest.approx(exact.volume.value, rel=turned)
+    assert found.area.value == pytest.approx(exact.area.value, rel=turned)
 
 
 @pytest.mark.parametrize("seed", [None, 5])

@@ -11,7 +11,6 @@ r"""Partial volume: grey levels as the fraction of a pixel or slab that the body
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import cv2
@@ -19,7 +18,6 @@ import numpy as np
 
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
-from stackloft.geometry.median import median
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
@@ -28,23 +26,14 @@ from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
-from stackloft_plugins.integrators.seen_slice import Mask, SeenSlice
+from stackloft_plugins.integrators.ring_levels import dilated, disc, eroded, innermost, ring_levels
+from stackloft_plugins.integrators.seen_slice import SeenSlice
 
-_RING = 4
-"""px: width of the rings beside the edge zone from which the two grey levels are taken."""
 _NAN = float("nan")
-_ENOUGH = 20
-"""Pixels in a ring for its level to count."""
-_FEW = 4
-"""Likewise of the innermost pixels of a thin body."""
-_LARGE = 40_000
-"""Pixels of a crop from which on a quarter of the rings tells their levels as well."""
 _TELLING = 100
 """Slices of a scan, evenly from first to last, that tell the two levels of all: more are no surer."""
 MOST_EXCESS = 0.02
 """Part of the volume by which an edge zone's pixels may be more than full: a skin so bright is no edge."""
-_OUTLIER = 6.0
-"""Robust standard deviations: what is further from the background's median does not count in its mean."""
 
 
 @dataclass(frozen=True)
@@ -203,11 +192,11 @@ def _sums(
     own = current.mask(current.window)
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside, near = _eroded(common, _disc(zone)), _dilated(united, _disc(zone))
+    inside, near = eroded(common, disc(zone)), dilated(united, disc(zone))
     between = (inside ^ near).view(np.bool_)
     edge = current.section.relative_where(between)
     full = edge[common[between].view(np.bool_)]
-    body, background = _ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
+    body, background = ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
     return _SliceSums(
         inside=cv2.countNonZero(inside),
         edge=len(edge),
@@ -216,47 +205,5 @@ def _sums(
         full_grey=float(full.sum()),
         body=body,
         background=background,
-        near=_innermost(current, common) if tells and np.isnan(body) else body,
+        near=innermost(current.section, common) if tells and np.isnan(body) else body,
     )
-
-
-def _ring_levels(section: SectionField, inside: Mask, near: Mask) -> tuple[float, float]:
-    """Return the levels of the rings beside the edge zone; of large ones every fourth pixel is seen."""
-    step = 2 if inside.size > _LARGE else 1
-    seen = section.every(step) if step > 1 else section
-    inside, near = (np.ascontiguousarray(mask[::step, ::step]) for mask in (inside, near))
-    ring = np.ones((2 * (_RING // step) + 1,) * 2, np.uint8)
-    within = (inside ^ _eroded(inside, ring)).view(np.bool_)
-    beyond = (near ^ _dilated(near, ring)).view(np.bool_)
-    return _level(seen.relative_where(within)), _mean_level(seen.relative_where(beyond))
-
-
-def _innermost(current: SeenSlice, common: Mask) -> float:
-    """Return the level of a thin body's innermost pixels."""
-    return _level(current.section.relative_where(_eroded(common, _disc(1)).view(np.bool_)), _FEW)
-
-
-def _eroded(mask: Mask, by: Mask) -> Mask:
-    return np.asarray(cv2.erode(mask, by, borderType=cv2.BORDER_CONSTANT, borderValue=1), np.uint8)
-
-
-def _dilated(mask: Mask, by: Mask) -> Mask:
-    return np.asarray(cv2.dilate(mask, by), np.uint8)
-
-
-def _mean_level(values: FloatArray) -> float:
-    """Return the mean without outliers: it is a sum that it is taken off from, and noise may be skewed."""
-    if len(values) < _ENOUGH:
-        return float("nan")
-    off = np.abs(values - median(values))
-    return float(values[off <= _OUTLIER * 1.4826 * median(off)].mean())
-
-
-def _level(values: FloatArray, enough: int = _ENOUGH) -> float:
-    return median(values) if len(values) >= enough else float("nan")
-
-
-@lru_cache
-def _disc(radius: int) -> Mask:
-    side = 2 * radius + 1
-    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side)), np.uint8)

@@ -21,9 +21,9 @@ from stackloft.model.notices import Notice
 from stackloft_plugins.segmenters.grey import Grey
 from stackloft_plugins.segmenters.half_way import Edge
 
-UNCLEAR = 0.06
+UNCLEAR = 0.15
 """Share of the belt above which the outline is in doubt. Rendered foods that are seen well stay below 0.006,
-the Visible Human's cryosections below 0.031; a pale apple on a white plate has 0.27 and more."""
+the Visible Human's 57 cryosections below 0.08; a pale apple on a white plate has 0.27 and more."""
 _AS_PLATE = 0.25
 """Of the step from plate to edge: what is nearer to the plate is plate, such as seen through a hole."""
 _EDGE = 4
