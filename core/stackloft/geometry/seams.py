@@ -1,7 +1,7 @@
 """Where each section's loop starts: phases that make neighbouring sections correspond.
 
 The phase of a section against its neighbour maximises the circular correlation of position, of tangent
-and of corners, and how alike the two loops are whatever the turn between them: the modulus of the tangents'
+and of corners, and how alike the two loops are whatever the turn between them: the power of the tangents'
 correlation. All phases are tried at once by FFT. Position holds near-circular loops still (no spin), tangents
 and corners follow a real twist; likeness keeps a long bent section, carried round by most of a right angle
 (a coil's), from being laid on the neighbour's part of the same ring instead of on its own tips.
@@ -74,7 +74,7 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
 def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
     """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
     shape = _correlation(_directions(tangents))
-    score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape)
+    score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
     return score
