@@ -107,7 +107,9 @@ def test_a_lying_limb_may_appear_at_once(count):
     assert len(solid.joints) == 2  # the limb's roots, where it appears and where it is gone again
 
 
-@pytest.mark.parametrize("count", [15, *(pytest.param(n, marks=pytest.mark.prove) for n in (13, 14, 16, 17, 18))])
+@pytest.mark.parametrize(
+    "count", [15, *(pytest.param(n, marks=pytest.mark.prove) for n in (13, 14, 16, 17, 18))]
+)
 def test_a_coil_may_be_carried_round_by_most_of_a_right_angle_from_cut_to_cut(count):
     """By 69° at 15 sections: columns once slipped along the ring there, by 16 % of false area."""
     phantom = dict(kind_poses())["coil upright"]
