@@ -116,3 +116,17 @@ def test_one_section_is_returned_as_it_is():
     curves, _, _ = sampled([rounded_rectangle(1.0)])
     first = np.arange(9)[None] / 9
     assert slide_points(curves, np.zeros(1), first, np.zeros((1, 9), bool)) == pytest.approx(first)
+
+
+@pytest.mark.parametrize("turn", [30.0, 69.0, 76.0])
+def test_a_crescent_goes_on_tip_to_tip_though_it_lies_on_the_same_ring(turn):
+    t = np.radians(110.0) * np.linspace(-1.0, 1.0, 120)
+    half = 6.0 * np.sqrt(1.0 - (t / t[-1]) ** 2)
+    sides = [np.stack([r * np.cos(t), r * np.sin(t)], axis=1) for r in (24.0 + half, 24.0 - half)]
+    crescent = np.concatenate([sides[0][:-1], sides[1][:0:-1]])
+    _, points, slopes = sampled([crescent, turned(crescent, turn)])
+    _, straight, _ = sampled([crescent, crescent])
+    # Canonical starts turn with the loop or do not: what counts is which points come to lie on which.
+    phase = solve_phases(points, slopes, [NONE, NONE]).phases[1]
+    met = np.roll(points[1], -round(phase * 128), axis=0)
+    assert np.linalg.norm(met - turned(straight[0], turn), axis=1).max() < 3.0

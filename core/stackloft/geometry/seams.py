@@ -1,8 +1,10 @@
 """Where each section's loop starts: phases that make neighbouring sections correspond.
 
 The phase of a section against its neighbour maximises the circular correlation of position, of tangent
-and of corners; all phases are tried at once by FFT. Position holds near-circular loops still (no spin),
-tangents and corners follow a real twist.
+and of corners, and how alike the two loops are whatever the turn between them: the power of the tangents'
+correlation. All phases are tried at once by FFT. Position holds near-circular loops still (no spin), tangents
+and corners follow a real twist; likeness keeps a long bent section, carried round by most of a right angle
+(a coil's), from being laid on the neighbour's part of the same ring instead of on its own tips.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
 TIE = 0.02
-"""Two phases whose scores (0 to 3) differ by less are a near tie."""
+"""Two phases whose scores (0 to 4) differ by less are a near tie."""
 ALIKE = 0.98
 """Shapes whose tangents correlate better than this fraction of the best are the same shape, turned."""
 TURNS_APART = np.radians(15.0)
@@ -71,7 +73,8 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
 
 def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
     """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
-    score = _correlation(_as_complex(points)).real + _correlation(_directions(tangents)).real
+    shape = _correlation(_directions(tangents))
+    score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
     return score

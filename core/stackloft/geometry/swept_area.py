@@ -1,41 +1,88 @@
-"""How much area a skin between two loops needs at most, if it goes straight from one to the other."""
+"""How much more area a skin between two loops has than one that goes straight from one to the other."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.bezier_patch import bernstein, evaluate
+from stackloft.geometry.patch_integrals import solid_integrals
 from stackloft.geometry.polygon_distance import inside_grid
-from stackloft.geometry.shoelace import polygon_perimeter
+from stackloft.geometry.shoelace import polygon_area, polygon_centroid, polygon_perimeter
 
 FloatArray = NDArray[np.float64]
 
 GRID = 128
 """Nodes along each side of the box in which the loops' difference is counted."""
+WEAK = 0.3
+"""Loops that share less than this fraction of the smaller one lie beside each other, not one on the other."""
+_ROUND = bernstein(np.arange(4) / 4)
+_RIMS = bernstein(np.array([0.0, 0.5, 1.0]))
 
 
-def swept_area(low: FloatArray, high: FloatArray, gap: float) -> float:
-    """Return the area between two loops seen along the axis, and the wall of their mean perimeter, mm².
+def areas_beyond(patches: FloatArray) -> tuple[FloatArray, float]:
+    """Return the area, mm², by which every row of patches exceeds what there is to go over; and the whole.
 
-    A skin that goes straight over has less: the root of the squares, piece by piece.
+    That is the area between the rims seen along the axis, and the wall between them; a skin that goes
+    straight over has less: the root of the squares, piece by piece. It may bulge, and then is longer
+    half-way, and goes out and back again: the wall's length is Simpson's mean with the half-way section's,
+    the area between the rims at least what the half-way section differs from both.
 
     Parameters
     ----------
-    low, high : (k, 2) arrays
-        Closed polygons, mm.
-    gap : float
-        Distance between their planes, mm.
+    patches : (rows, columns, 4, 4, 3) array
+        Bézier control points [v, u], mm; z is constant along each row's rims.
+
+    Returns
+    -------
+    (rows,) array
+        0 or less for sound skins, positive where columns slipped round.
+    float
 
     Examples
     --------
-    >>> square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
-    >>> round(swept_area(square, square + [1.0, 0.0], 2.0))
-    40
+    >>> t = 2 * np.pi * np.arange(24) / 24
+    >>> from stackloft.geometry.skin import Rows, skin
+    >>> ring = np.stack([9 * np.cos(t), 3 * np.sin(t), 0 * t], axis=1)
+    >>> tube = np.stack([ring, ring + [0, 0, 1.0], np.roll(ring, 6, axis=0) + [0, 0, 2.0]])
+    >>> rows = Rows(tube, np.zeros((3, 24), bool), np.zeros(3, bool), (None, None))
+    >>> (areas_beyond(skin(rows))[0] > 10.0).tolist()
+    [False, True]
     """
+    areas = np.array(
+        [solid_integrals(patches[k : k + 1], (0.0, 0.0), np.eye(4), degree=4)[1] for k in range(len(patches))]
+    )
+    rims = evaluate(patches, _RIMS, _ROUND)  # (rows, columns, 3, 4, 3)
+    loops = np.moveaxis(rims, 2, 1).reshape(len(patches), 3, -1, 3)
+    needed = np.array([_needed(own, area) for own, area in zip(loops, areas, strict=True)])
+    return areas - needed, float(areas.sum())
+
+
+def _needed(loops: FloatArray, area: float) -> float:
+    """Return what there is to go over from the first to the last of three loops (3, k, 3), mm².
+
+    The loops' difference is counted only where an area needs it.
+    """
+    low, half, high = loops[..., :2]
+    lengths = [polygon_perimeter(loop) for loop in (low, half, high)]
+    length = (lengths[0] + 4.0 * lengths[1] + lengths[2]) / 6.0
+    sizes = [abs(polygon_area(loop)) for loop in (low, half, high)]
+    out = float(np.abs(np.diff(sizes)).sum())
+    gap = float(loops[2, 0, 2] - loops[0, 0, 2])
+    if area <= length * gap + out:
+        return area
+    apart, shared = _difference(low, high)
+    if shared < WEAK * min(sizes[0], sizes[2]):  # the wall slants from one to the other
+        gap = float(np.hypot(gap, np.linalg.norm(polygon_centroid(high) - polygon_centroid(low))))
+    return length * gap + max(out, apart)
+
+
+def _difference(low: FloatArray, high: FloatArray) -> tuple[float, float]:
+    """Return the areas that lie in one of two polygons alone, and in both, mm²."""
     both = np.concatenate([low, high])
     least, most = both.min(axis=0), both.max(axis=0)
     t = (np.arange(GRID) + 0.5) / GRID
     x, y = least[:, None] + t * (most - least)[:, None]
     one, two = (inside_grid(x, y, p, np.roll(p, -1, axis=0)) for p in (low, high))
-    between = float((one != two).mean() * np.prod(most - least))
-    return between + 0.5 * (polygon_perimeter(low) + polygon_perimeter(high)) * gap
+    box = float(np.prod(most - least))
+    return float((one != two).mean()) * box, float((one & two).mean()) * box

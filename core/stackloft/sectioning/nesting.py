@@ -18,9 +18,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.polygon_distance import signed_distance_at
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 
+TOUCHING = 1e-3
+"""Loops that overstep each other by less than this fraction of the longer side of one's box touch: where a
+body all but parts, curves through two tips overstep each other by what lies between two points of a loop."""
 _CHUNK = 2_000_000  # point–edge pairs tested at a time
 
 
@@ -52,16 +56,29 @@ def enclosing_loops(loops: Sequence[FloatArray], name: str = "") -> list[list[in
             if inner == outer or (high < outer_low).any() or (low > outer_high).any():
                 continue
             within = inside_polygon(loops[inner], loops[outer])
+            if within.any() and not within.all():
+                within = within[_clear(loops[inner], loops[outer])]
+            if not len(within):
+                raise _crossing(name, inner, outer)
             if within.all() and not _same_or_larger(low, high, outer_low, outer_high):
                 found[inner].append(outer)
             elif within.any() and not within.all():
-                raise InputError(
-                    "loops cross each other",
-                    where=name or None,
-                    found=f"loops {inner + 1} and {outer + 1}",
-                    expected="loops that lie apart or one within the other",
-                )
+                raise _crossing(name, inner, outer)
     return found
+
+
+def _clear(points: FloatArray, polygon: FloatArray) -> NDArray[np.bool_]:
+    """Return whether each point lies clear of a polygon's line, which loops that touch may overstep."""
+    return np.abs(signed_distance_at(points, [polygon])) > TOUCHING * float(np.ptp(polygon, axis=0).max())
+
+
+def _crossing(name: str, one: int, other: int) -> InputError:
+    return InputError(
+        "loops cross each other",
+        where=name or None,
+        found=f"loops {one + 1} and {other + 1}",
+        expected="loops that lie apart or one within the other",
+    )
 
 
 def nesting_depths(loops: Sequence[FloatArray], name: str = "") -> list[int]:

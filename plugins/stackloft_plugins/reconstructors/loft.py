@@ -30,6 +30,7 @@ from stackloft_plugins.reconstructors.end_reports import (
     row_end,
 )
 from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
+from stackloft_plugins.reconstructors.skin_areas import refuse_slipped
 
 FEWEST = 2
 """Sections that a solid needs."""
@@ -149,10 +150,11 @@ def _self_check(
     sections: EqualSections,
     contours: ContourStack,
 ) -> None:
-    """Hold the skin between the outermost sections against their areas."""
+    """Hold the skin between the outermost sections against their areas, and against what it goes over."""
     rows = _inner_rows(patches, planned)
     names = tuple(section.name for section in contours.sections)
     check_against_areas(patches, rows, contours.positions, sections.curves.areas, names)
+    refuse_slipped([(patches[rows], names)])
 
 
 def _reports(
