@@ -77,7 +77,7 @@ def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray])
     score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
-    return score
+    return np.asarray(score)
 
 
 def _as_complex(plane: FloatArray) -> ComplexArray:

@@ -38,9 +38,11 @@ def pixels_of(image: Image.Image, paper: int) -> NDArray[Any]:
 
 
 def _unpacked(image: Image.Image) -> NDArray[np.uint8]:
-    """Return the pixels of an 8-bit picture, taken over row by row: Pillow's own way copies them thrice."""
+    """Return the pixels of an 8-bit picture, some rows at once: Pillow's own way copies all of them thrice."""
     columns, rows = image.size
     pixels = np.empty((rows, columns, 3) if image.mode == "RGB" else (rows, columns), np.uint8)
+    if image.mode == "L" and _pasted(image, pixels):
+        return pixels
     step = max(1, _AT_ONCE // columns)
     for top in range(0, rows, step):
         bottom = min(top + step, rows)
@@ -58,3 +60,12 @@ def _composited(image: Image.Image, paper: int) -> NDArray[Any]:
     weight = alpha.astype(np.float32) / 255
     laid = np.rint(colour * weight + paper * (1 - weight)).astype(np.uint8)
     return np.ascontiguousarray(laid[..., 0] if laid.shape[-1] == 1 else laid)
+
+
+def _pasted(image: Image.Image, pixels: NDArray[np.uint8]) -> bool:
+    """Copy a grey picture into `pixels`, a tenth of the time; return whether it has come there."""
+    canvas = Image.frombuffer("L", image.size, pixels, "raw", "L", 0, 1)  # one that lies in this memory
+    canvas.readonly = 0
+    pixels[-1] = ~np.asarray(image.crop((0, image.size[1] - 1, *image.size)))[0]
+    canvas.paste(image)
+    return bool((pixels[-1] == np.asarray(image.crop((0, image.size[1] - 1, *image.size)))[0]).all())

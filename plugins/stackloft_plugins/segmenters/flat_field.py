@@ -47,10 +47,11 @@ class Light:
         """Return `sign` times the grey levels of a window of the picture, as under even light."""
         rows = np.arange(self.shape[0])[window[0]]
         columns = np.arange(self.shape[1])[window[1]]
+        down, along = (factor.astype(np.float32) for factor in self._factors(rows, columns))
         flat = np.empty(grey.shape, np.float32)
         for top in range(0, len(rows), _AT_ONCE):
             some = slice(top, top + _AT_ONCE)
-            light = self.at(rows[some], columns, np.float32)
+            light = down[some] @ along
             cv2.divide(np.ascontiguousarray(grey[some]), light, flat[some], scale=sign, dtype=cv2.CV_32F)
         return flat
 
@@ -60,13 +61,20 @@ class Light:
         columns: FloatArray | IntArray,
         dtype: type[np.floating[Any]] = np.float64,
     ) -> NDArray[np.floating[Any]]:
-        """Return the brightness at rows × columns, as one product of two thin matrices."""
+        """Return the brightness at rows × columns."""
+        down, along = self._factors(rows, columns)
+        return np.asarray(down.astype(dtype) @ along.astype(dtype))
+
+    def _factors(
+        self, rows: FloatArray | IntArray, columns: FloatArray | IntArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return two thin matrices, (rows, 3) and (3, columns), whose product is the brightness."""
         y = 2.0 * rows / max(self.shape[0] - 1, 1) - 1.0
         x = 2.0 * columns / max(self.shape[1] - 1, 1) - 1.0
         c = self.coefficients
         down = np.stack([c[0] + c[2] * y + c[5] * y * y, c[1] + c[4] * y, np.ones_like(y)], axis=1)
         along = np.stack([np.ones_like(x), x, c[3] * x * x])
-        return np.asarray(down.astype(dtype) @ along.astype(dtype))
+        return down, along
 
 
 def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Light | None:
@@ -98,9 +106,8 @@ def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Li
     plate = cv2.dilate(body, kernel) == 0
     if plate.mean() < _LEAST:
         return None
-    row, column = np.nonzero(plate)
-    every = max(1, len(row) // _MOST)
-    row, column = row[::every], column[::every]
+    where = np.flatnonzero(plate)
+    row, column = np.divmod(where[:: max(1, len(where) // _MOST)], plate.shape[1])
     value = coarse[row, column].astype(np.float64)
     y = 2.0 * row * step / max(shape[0] - 1, 1) - 1.0
     x = 2.0 * column * step / max(shape[1] - 1, 1) - 1.0
