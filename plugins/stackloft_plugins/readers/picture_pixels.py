@@ -38,7 +38,7 @@ def pixels_of(image: Image.Image, paper: int) -> NDArray[Any]:
 
 
 def _unpacked(image: Image.Image) -> NDArray[np.uint8]:
-    """Return the pixels of an 8-bit picture, some rows at once: Pillow's own way copies all of them thrice."""
+    """Return the pixels of an 8-bit picture, some rows at once: Pillow's own way copies them thrice."""
     columns, rows = image.size
     pixels = np.empty((rows, columns, 3) if image.mode == "RGB" else (rows, columns), np.uint8)
     if image.mode == "L" and _pasted(image, pixels):
