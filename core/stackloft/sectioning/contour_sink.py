@@ -17,6 +17,7 @@ from stackloft.sectioning.ahead import AHEAD, Behind, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
+from stackloft.sectioning.opencv_threads import without_opencv_threads
 from stackloft.sectioning.silhouettes import SETTLED
 from stackloft.sectioning.slab_contours import on_middle_planes
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
@@ -189,7 +190,8 @@ def decoded_ahead(
         return index, picture, segmentation.field_beside(index, picture)
 
     rows, columns = segmentation.stack.shape
-    yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else 1)
+    with without_opencv_threads():
+        yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else 1)
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:
