@@ -21,6 +21,9 @@ ROUND = 1.0
 """q of a smooth round end."""
 SHAPES = (2.0 / 3.0, 4.0 / 3.0)
 """Exponents between which a body's end is expected: blunter and sharper than round."""
+PARABOLA = 3
+BLUNT = 0.5
+"""Length of the bluntest cap of a limb, in lengths of a round one."""
 FARTHEST = 1e6
 """Times the depth of the sections looked at beyond which nothing closes."""
 
@@ -85,7 +88,9 @@ class EndGuess:
     """mm, by the sharpest."""
 
 
-def guess_end(areas: FloatArray, depth: FloatArray, pitch: float, seen: float = 0.0) -> EndGuess:
+def guess_end(
+    areas: FloatArray, depth: FloatArray, pitch: float, seen: float = 0.0, limb: float | None = None
+) -> EndGuess:
     """Return the most plausible end when nobody said where the body ends.
 
     Parameters
@@ -96,6 +101,8 @@ def guess_end(areas: FloatArray, depth: FloatArray, pitch: float, seen: float = 
         Distance between cuts, mm: the end is never further, or it would show on one more section.
     seen : float
         How far beyond the outermost section the body still showed, mm: the end is beyond that.
+    limb : float, optional
+        Where an even limb ends (`distance_to_limb_end`), mm; None for what is no limb.
 
     Returns
     -------
@@ -111,12 +118,18 @@ def guess_end(areas: FloatArray, depth: FloatArray, pitch: float, seen: float = 
     if tip is not None and seen <= tip <= furthest and _is_tip(areas, depth):
         reason = "the square root of the area runs straight to zero"
         return EndGuess(tip, True, reason, min(low, tip), tip)
+    if limb is not None and seen <= limb <= furthest:
+        return EndGuess(
+            limb, False, "an even limb with a round cap", max(seen, BLUNT * limb), max(high, limb)
+        )
     root = roots[-1]
     if root is None:
         reason = "the areas do not close, half a pitch was assumed"
     elif root > furthest:
         reason = "the areas close later than one pitch, one pitch was assumed"
         low = min(low, seen + 0.5 * pitch)
+    elif len(areas) < PARABOLA:
+        reason = "the last two sections, carried on, reach zero there"
     else:
         reason = "the parabola through the last three areas reaches zero there"
     return EndGuess(lengths[-1], False, reason, low, high)

@@ -15,6 +15,8 @@ APART = 1.0 / 3.0
 """Smallest distance of two corners as a fraction of the points' even spacing."""
 REACH = 0.07
 """Corners of neighbouring sections belong together when closer than this fraction of the loop."""
+FARTHEST = 0.25
+"""Fraction of the loop beyond which they never do."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +37,8 @@ def follow_corners(
     count: int,
     kept: frozenset[int] = frozenset(),
     reach: FloatArray | None = None,
+    places: list[FloatArray] | None = None,
+    pitches: FloatArray | None = None,
 ) -> list[CornerChain]:
     """Return the corner chains of a stack in order round the loop.
 
@@ -50,6 +54,10 @@ def follow_corners(
     reach : (m - 1,) array, optional
         Fraction of the loop within which corners of a section and the next belong together; `REACH` if
         not given.
+    places : list of (c_i, 2) arrays, optional
+        The corners in their planes, mm, and with `pitches`, (m - 1,) mm: those no farther apart than the
+        sections belong together as well, within `FARTHEST` of the loop. Where a limb grows out of a body its
+        loop becomes longer in one place, and the limb's corners move by more of it than in space.
 
     Returns
     -------
@@ -62,7 +70,11 @@ def follow_corners(
     active: list[dict[int, float]] = []
     within = np.full(len(corners), REACH) if reach is None else np.concatenate([[REACH], reach])
     for section, marks in enumerate(corners):
-        active = _extend(active, section, marks, chains, float(within[section]))
+        near = np.zeros((len(marks), len(active)), dtype=bool)
+        if section and places is not None and pitches is not None:
+            apart = np.linalg.norm(places[section][:, None] - places[section - 1][None], axis=2)
+            near = apart <= pitches[section - 1]
+        active = _extend(active, section, marks, chains, np.where(near, FARTHEST, within[section]))
     least = max(min(2, len(corners)), math.ceil(PERSISTENT * len(corners)))
     long_enough = [CornerChain(chain) for chain in chains if len(chain) >= least or kept & chain.keys()]
     longest = sorted(
@@ -76,7 +88,7 @@ def _extend(
     section: int,
     marks: FloatArray,
     chains: list[dict[int, float]],
-    within: float,
+    within: FloatArray,
 ) -> list[dict[int, float]]:
     """Append the section's corners to the nearest active chains, or begin new ones."""
     away = np.array([[abs(_wrapped(mark - chain[section - 1])) for chain in active] for mark in marks])
@@ -84,7 +96,7 @@ def _extend(
     taken: set[int] = set()
     for flat in np.argsort(away, axis=None, kind="stable"):  # the closest pair first: a joint's pin beside
         i, k = divmod(int(flat), len(active))  # a corner must not take its column
-        if i in following or k in taken or away[i, k] >= within:
+        if i in following or k in taken or away[i, k] >= within[i, k]:
             continue
         taken.add(k)
         before = active[k][section - 1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from stackloft.geometry.end_model import EndGuess, guess_end, local_exponent
+from stackloft.geometry.limb_end import distance_to_limb_end
 from stackloft.model.arrays import FloatArray
 from stackloft.model.ends import End, EndKind
 from stackloft.model.errors import InputError, UsageError
@@ -59,6 +60,8 @@ class StackEnds:
     """A slab's own thickness, mm."""
     seen_beyond: tuple[float, float] = (0.0, 0.0)
     """How far beyond the first and the last section the body still showed, mm."""
+    half_widths: FloatArray | None = None
+    """(m,) mm: half the smaller width of each section; tells limbs' caps where areas do not."""
 
 
 def plan_ends(stack: StackEnds, said: tuple[End, End], height: float | None) -> tuple[PlannedEnd, PlannedEnd]:
@@ -95,7 +98,11 @@ def _inward(stack: StackEnds, *, at_last: bool) -> tuple[FloatArray, FloatArray]
 
 def _guess(stack: StackEnds, *, at_last: bool) -> EndGuess:
     areas, depth = _inward(stack, at_last=at_last)
-    return guess_end(areas, depth, float(depth[1]), stack.seen_beyond[at_last])
+    limb = None
+    if stack.half_widths is not None:
+        widths = stack.half_widths[::-1] if at_last else stack.half_widths
+        limb = distance_to_limb_end(areas, widths, depth)
+    return guess_end(areas, depth, float(depth[1]), stack.seen_beyond[at_last], limb)
 
 
 def _plan(stack: StackEnds, end: End, *, at_last: bool, height_known: bool) -> PlannedEnd:

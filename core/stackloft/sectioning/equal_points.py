@@ -75,7 +75,7 @@ def equal_points(contours: ContourStack, count: int, kept: frozenset[int] = froz
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
     reach = np.minimum(REACH, CLOSE + STEEP * np.diff(z) / curves.lengths.max())
-    chains = follow_corners(seams.corners, count, kept, reach)
+    chains = follow_corners(seams.corners, count, kept, reach, _in_plane(curves, seams), np.diff(z))
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
@@ -185,6 +185,12 @@ def _corner_places(curves: CurveStack, section: int, corners: IntArray) -> Float
         return np.empty(0)
     knots = curves.knots[curves.first[section] + corners] - section
     return np.sort(np.mod(knots - curves.starts[section], 1.0))
+
+
+def _in_plane(curves: CurveStack, seams: _Seams) -> list[FloatArray]:
+    """Return the corners of each section, (c_i, 2) mm."""
+    at = zip(seams.corners, seams.phases, strict=True)
+    return [curves.at(np.full(len(own), k), own + phase)[0] for k, (own, phase) in enumerate(at)]
 
 
 def _first_guess(chains: list[CornerChain], count: int, seams: _Seams) -> tuple[FloatArray, BoolArray]:

@@ -12,12 +12,16 @@ from stackloft.geometry.bridge_cut import cut_bridges
 from stackloft.geometry.bridge_edges import BridgeCut
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.model.arrays import FloatArray
+from stackloft.sectioning.change_of_topology import change_levels
 from stackloft.sectioning.levels import Level, is_hole, loop_counts, put_in_level
 from stackloft.sectioning.section_regions import overlap
-from stackloft.sectioning.sections_between import between, change_levels
+from stackloft.sectioning.sections_between import between
 
 NARROWER = 0.3
 """A bridge near the change of topology is shorter than this fraction of the one on the section."""
+
+SAME = 1e-6
+"""Lengths that differ by this fraction are of one bridge, cut on vertices that were rounded differently."""
 
 
 def narrows(trial: list[Straight | Joined | None], direct: Straight | Joined | None) -> bool:
@@ -29,7 +33,7 @@ def narrows(trial: list[Straight | Joined | None], direct: Straight | Joined | N
         return True
     lengths = [bridge_length(step.cut) for step in trial if isinstance(step, Joined)]
     whole = bridge_length(direct.cut)
-    if whole in lengths:  # the section itself lies next to the change
+    if np.isclose(lengths, whole, rtol=SAME).any():  # the section itself lies next to the change
         whole = max(np.sqrt(abs(polygon_area(w.points))) for w in direct.cut.wholes)
     return max(lengths, default=0.0) < NARROWER * whole
 

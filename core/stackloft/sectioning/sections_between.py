@@ -34,14 +34,6 @@ from stackloft.sectioning.traced_corners import with_corners
 GRID = 160
 """Grid steps across the larger side of the loops' box."""
 MARGIN = 3
-CLOSEST = 1.0 / 256.0
-"""How closely, in pitches, the change of topology is bracketed."""
-GRADES = (0.25, 1.0 / 16.0, 1.0 / 64.0)
-"""Distances from the change, as fractions of the way to the given section, at which sections are put in."""
-FINEST = 0.25
-"""Levels are put in no closer to the change than this many grid steps."""
-NEAR = 0.1
-"""Part of the pitch within which a section stands for the levels about the change."""
 FACING = 6.0
 """Grid steps between two corners below which neither is put back."""
 LEAST = 1e-3
@@ -64,6 +56,8 @@ class BetweenField:
     """mm"""
     area: Callable[[float], float]
     """mm² that the loops should enclose at t"""
+    sides: tuple[tuple[int, int], tuple[int, int]]
+    """Outlines and holes of either section; the grid may join what comes closer than its step."""
     hollow: bool = False
     """True when the loops bound holes: background within, body around them."""
 
@@ -102,7 +96,8 @@ def between(
     x, y = plane_grid([*before, *after])
     largest = max([*before, *after], key=lambda p: abs(polygon_area(p)))
     fields = signed_distance(x, y, before), signed_distance(x, y, after)
-    return BetweenField(x, y, *fields, pitch, area, hollow=polygon_area(largest) < 0.0)
+    sides = topology(before), topology(after)
+    return BetweenField(x, y, *fields, pitch, area, sides, hollow=polygon_area(largest) < 0.0)
 
 
 def level_of_area(field: FloatArray, step: float, area: float) -> float:
@@ -201,43 +196,7 @@ def _even_vertices(line: FloatArray, count: int) -> FloatArray:
     return np.column_stack([np.interp(wanted, arc, line[:, k]) for k in (0, 1)])
 
 
-def change_levels(field: BetweenField, *, cornered: bool) -> list[tuple[float, list[Loop]]]:
-    """Return (t, loops) of levels about the change of topology between t = 0 and t = 1, increasing in t.
-
-    The last t with the first section's topology and the first t with the second's are found to `CLOSEST`;
-    what lies between them is the interpolation's noise or several changes close together.
-    """
-    low, high = _reach(field, 0.0, 1.0), _reach(field, 1.0, 0.0)
-    if low >= high or (low, high) == (0.0, 1.0):
-        return []
-    sides = {start: _topology(field.at(start)) for start in (0.0, 1.0)}
-    # Columns through rows a hair apart take their direction from the noise: of the two levels about the
-    # change only the one that is cut is kept, and a section next to the change stands for it.
-    cut_first = bool(np.subtract(*sides[0.0]) < np.subtract(*sides[1.0]))
-    change, room = (low, low) if cut_first else (high, 1.0 - high)
-    finest = FINEST * float(field.x[1] - field.x[0]) / field.pitch
-    below = [(low * (1.0 - g), 0.0) for g in GRADES if low * g >= finest]
-    about = [] if room < NEAR else [(change, 0.0 if cut_first else 1.0)]
-    above = [(high + (1.0 - high) * g, 1.0) for g in reversed(GRADES) if (1.0 - high) * g >= finest]
-    levels = [(t, field.loops_at(t, cornered=cornered), side) for t, side in (*below, *about, *above)]
-    return [
-        (t, loops) for t, loops, side in levels if _topology([loop.points for loop in loops]) == sides[side]
-    ]
-
-
-def _reach(field: BetweenField, start: float, stop: float) -> float:
-    """Return how far from `start` towards `stop` the topology at `start` lasts."""
-    now = _topology(field.at(start))
-    while abs(stop - start) > CLOSEST:
-        middle = 0.5 * (start + stop)
-        if _topology(field.at(middle)) == now:
-            start = middle
-        else:
-            stop = middle
-    return start
-
-
-def _topology(loops: list[FloatArray]) -> tuple[int, int]:
+def topology(loops: list[FloatArray]) -> tuple[int, int]:
     """Return the numbers of outlines and holes."""
     holes = sum(polygon_area(p) < 0.0 for p in loops)
     return len(loops) - holes, holes

@@ -52,16 +52,22 @@ class Side:
     whole: tuple[PlannedEnd, PlannedEnd] | None
     at_last: bool
 
-    def plan(self, z: FloatArray, sizes: FloatArray) -> PlannedEnd:
-        """Return the end of a piece whose sizes (areas, or what closes as areas do) come outermost first."""
+    def plan(self, z: FloatArray, sizes: FloatArray, half_widths: FloatArray | None = None) -> PlannedEnd:
+        """Return the end of a piece whose sizes (areas, or what closes as areas do) come outermost first.
+
+        `half_widths` are those of sections that may be a limb's.
+        """
         if self.whole is not None:
             return self.whole[self.at_last]
         positions, values = (z[::-1], sizes[::-1]) if self.at_last else (z, sizes)
+        if half_widths is not None and self.at_last:
+            half_widths = half_widths[::-1]
         if len(z) == 1:
             pitch = float(np.diff(self.contours.positions).min()) if len(self.contours) > 1 else 1.0
             positions = np.array([z[0], z[0] + pitch]) if not self.at_last else np.array([z[0] - pitch, z[0]])
-            values = np.repeat(sizes, 2)
-        stack = StackEnds(positions, values, self.contours.kind, self.contours.thickness)
+            values, half_widths = np.repeat(sizes, 2), None
+        kind, thickness = self.contours.kind, self.contours.thickness
+        stack = StackEnds(positions, values, kind, thickness, half_widths=half_widths)
         own = self.said[self.at_last]
         return plan_ends(stack, (own, own), None)[self.at_last]
 

@@ -18,6 +18,7 @@ from stackloft.sectioning.dense_loops import curve_polygon
 from stackloft.sectioning.ends import PlannedEnd
 from stackloft.sectioning.levels import is_hole
 from stackloft.sectioning.line_roof import moved
+from stackloft.sectioning.outermost_rows import arch_lengths, half_widths, outermost, sizes
 from stackloft.sectioning.roof import TURNS, Thickness, half_thickness, roof_levels
 from stackloft.sectioning.section_regions import OUTSIDE, section_regions
 from stackloft.sectioning.stack_roofs import OUTER, Side, sees_all
@@ -81,8 +82,11 @@ def planned_tube(
         if isinstance(told, JointUse):
             ends.append(TubeEnd(None, told))
         elif outer:
-            z, areas = _outermost(rows, at_last=at_last)
-            ends.append(TubeEnd(sides[at_last].plan(z, areas), outer=True))
+            chosen = outermost(rows, at_last=at_last)
+            z, areas = sizes(chosen)
+            arch = arch_lengths(chosen)
+            size = areas if arch is None else arch
+            ends.append(TubeEnd(sides[at_last].plan(z, size, half_widths(chosen)), outer=True))
         elif not np.isfinite(told):
             ends.append(TubeEnd(FACE, outer=True))
         elif inner_faces:
@@ -99,15 +103,6 @@ def planned_tube(
     return PlannedTube(tuple(rows), (ends[0], ends[1]))
 
 
-def _outermost(rows: list[Row], *, at_last: bool) -> tuple[FloatArray, FloatArray]:
-    """Return positions and areas of a tube's outermost sections, outermost first."""
-    inward = rows[::-1] if at_last else rows
-    real = [row for row in inward if row.section is not None]
-    # Rows put in lie too close together for a parabola; over the whole of a short tube they make a line.
-    chosen = real[:OUTER] if len(real) >= 2 else [inward[0], inward[-1]] if len(inward) > 1 else inward
-    return np.array([row.z for row in chosen]), np.array([abs(row.loop.signed_area) for row in chosen])
-
-
 def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row], PlannedEnd]:
     """Return rows and end of a tube that ends before the next level, `gap` mm away.
 
@@ -117,7 +112,7 @@ def _vanishing(rows: list[Row], gap: float, *, at_last: bool) -> tuple[list[Row]
     roofed = _vanishing_ridge(rows, gap, at_last=at_last) or _vanishing_line(rows, gap, at_last=at_last)
     if roofed is not None:
         return roofed, FACE
-    z, areas = _outermost(rows, at_last=at_last)
+    z, areas = sizes(outermost(rows, at_last=at_last))
     root = distance_to_end(areas, np.abs(z - z[0])) if len(z) >= 2 else None
     if root is not None and root < LATE * gap:
         # A body that closed later would show on the next section: it is blunter than the areas say.

@@ -8,6 +8,7 @@ from typing import ClassVar
 from stackloft.contracts.options import option
 from stackloft.geometry.folds import folded_rows
 from stackloft.geometry.loft_rows import closed_rows
+from stackloft.geometry.second_moments import half_axes
 from stackloft.geometry.skin import skin
 from stackloft.model.arrays import FloatArray, read_only
 from stackloft.model.contour_stack import ContourStack
@@ -125,8 +126,9 @@ class LoftReconstructor:
 
 
 def _stack_ends(contours: ContourStack, sections: EqualSections) -> StackEnds:
-    areas = sections.curves.areas
-    return StackEnds(contours.positions, areas, contours.kind, contours.thickness, contours.seen_beyond)
+    areas, widths = sections.curves.areas, half_axes(sections.points)[:, 1]
+    kind, thickness = contours.kind, contours.thickness
+    return StackEnds(contours.positions, areas, kind, thickness, contours.seen_beyond, widths)
 
 
 def _shell_end(end: PlannedEnd) -> ShellEnd:

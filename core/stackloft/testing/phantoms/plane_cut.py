@@ -98,6 +98,11 @@ class PlaneCut:
                 break
         return p
 
+    def away(self, piece: int, p: FloatArray) -> float:
+        """Return about how far a plane point (2) is from the zero of one field, mm."""
+        value, gradient = self.values_and_gradients(piece, p[:, None])
+        return float(abs(value[0]) / (np.hypot(*gradient[:, 0]) + _LEVEL))
+
     def _lift(self, p: FloatArray) -> FloatArray:
         """Return plane points (2, n) as bench points less the offset, (3, n)."""
         return np.stack(

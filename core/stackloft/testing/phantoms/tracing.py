@@ -22,6 +22,10 @@ _TINY = 1e-9
 _SAME = 1e-5
 _SPREADS = 3
 _FITS = 12
+_FINER = (1, 3, 9, 27)
+"""Times as many steps are tried."""
+_MET = 1e-6
+"""A corner is this near to both boundaries, in sizes of the section."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,14 +55,20 @@ def trace(
     points : int
         Points on each loop; corners are among them.
     detail : int
-        Steps of the grid across the box; a loop narrower than a step may be missed.
+        Steps of the grid across the box; a loop narrower than a step may be missed. Where two fields come so
+        close that a step joins what does not touch, they have no corner there, and the grid is refined.
     """
-    found = []
-    for ring in _rings(cut, box, detail):
-        arcs = _arcs(cut, ring)
-        if arcs:
-            found.append(_loop(cut, arcs, points))
-    return oriented(_told_once(found))
+    for finer in _FINER:
+        try:
+            every = [_arcs(cut, ring) for ring in _rings(cut, box, finer * detail)]
+        except _NoCornerError:
+            continue
+        return oriented(_told_once([_loop(cut, arcs, points) for arcs in every if arcs]))
+    raise ValueError(f"z = {cut.z:g} mm: two parts of the body all but touch; cut it elsewhere")
+
+
+class _NoCornerError(Exception):
+    """Two fields are nowhere both zero near where one takes over from the other."""
 
 
 def _told_once(loops: Sequence[Loop]) -> list[Loop]:
@@ -144,6 +154,8 @@ def _corners(
 ) -> list[tuple[int, FloatArray]]:
     """Return [(field after the corner, corner)] from `first` to `second`, passing fields hidden between."""
     corner = cut.meet(first, second, near)
+    if max(cut.away(field, corner) for field in (first, second)) > _MET * cut.size:
+        raise _NoCornerError
     value, piece = cut.worst(corner[:, None])
     hidden = int(piece[0])
     slope = np.hypot(*cut.values_and_gradients(hidden, corner[:, None])[1][:, 0])
