@@ -39,11 +39,18 @@ Linked = tuple[LinkedLoops, Change | None]
 
 
 class LinkFinder:
-    """Finds the links of a stack of levels; what it had to choose is in `notices`."""
+    """Finds the links of a stack of levels.
 
-    def __init__(self, levels: list[Level], said: Mapping[str, Links]) -> None:
+    What it had to choose is in `notices`; sections after which limbs could be cut off, in `limbs`.
+    """
+
+    def __init__(
+        self, levels: list[Level], said: Mapping[str, Links], cut: frozenset[int] = frozenset()
+    ) -> None:
         self.notices: list[Notice] = []
+        self.limbs: set[int] = set()
         self._said = said
+        self._cut = cut
         self._real = [level for level in levels if level.section is not None]
         z = [level.z for level in self._real]
         areas = [covered(level) for level in self._real]
@@ -84,7 +91,7 @@ class LinkFinder:
         if not linked.before or not linked.after:
             return [(linked, None)]
         if linked.plain:
-            return [(linked, _limbs(before, after, linked))]
+            return [(linked, self._limbs(before, after, linked))]
         change = self._change(before, after, linked)
         if change is None:
             return None
@@ -135,6 +142,17 @@ class LinkFinder:
         trial = steps_between(one, put_in, two)
         return (put_in, trial) if all(t is not None for t in trial) else direct
 
+    def _limbs(self, before: Level, after: Level, linked: LinkedLoops) -> Change | None:
+        """Return the step by which a section's loop goes on as the next one's once its limbs are cut off."""
+        if before.section is None or after.section is None:
+            return None
+        one, two = part_level(before, linked.before), part_level(after, linked.after)
+        step = limbs_cut_off(one, two)
+        if step is None:
+            return None
+        self.limbs.add(before.section)
+        return Change(linked, (one, two), (step,)) if before.section in self._cut else None
+
     def part_area(self, before: Level, after: Level, one: Level, two: Level) -> Callable[[float], float]:
         """Return the area of the loops that change, mm², at t in [0, 1] between two sections.
 
@@ -151,15 +169,6 @@ class LinkFinder:
             return min(max(own, 0.7 * low), 1.4 * high)
 
         return area
-
-
-def _limbs(before: Level, after: Level, linked: LinkedLoops) -> Change | None:
-    """Return the step by which one section's loop goes on as the next one's once its limbs are cut off."""
-    if before.section is None or after.section is None:
-        return None
-    one, two = part_level(before, linked.before), part_level(after, linked.after)
-    step = limbs_cut_off(one, two)
-    return None if step is None else Change(linked, (one, two), (step,))
 
 
 def _regions(level: Level) -> Regions:

@@ -14,6 +14,7 @@ from stackloft.sectioning.ends import StackEnds, plan_ends
 from stackloft.sectioning.levels import Level, is_hole, make_level
 from stackloft.sectioning.line_roof import line_end
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
+from stackloft.sectioning.mends import Mends
 from stackloft.sectioning.stack_roofs import OUTER, Roof, Side, roofs_of, sees_all
 from stackloft.sectioning.tube_ends import (
     SIDES,
@@ -27,6 +28,7 @@ SPECK = 1e-6
 """Loops below this fraction of the section's largest are no part of any body."""
 LONG = 2.2
 """Perimeter² / (4π area) of an outline that needs more points; a circle has 1, a 4.5 : 1 ellipse 2."""
+STRAIGHT = Mends()
 FINER = 3
 """Times as many points on long loops, and on tubes with levels put in: neighbouring levels there lie so
 close that the difference of two coarse curves would show as a ledge of false area."""
@@ -69,13 +71,13 @@ def plan_tubes(
     contours: ContourStack,
     said: tuple[End, End],
     height: float | None,
-    filled: frozenset[int] = frozenset(),
+    mended: Mends = STRAIGHT,
     *,
     inner_faces: bool = False,
 ) -> TubePlan:
     """Return a stack's tubes and how they end.
 
-    `filled` is as for `trace_tubes`, `inner_faces` as for `planned_tube`.
+    `mended` is as for `trace_tubes`, `inner_faces` as for `planned_tube`.
 
     Raises
     ------
@@ -91,7 +93,7 @@ def plan_tubes(
         whole = plan_ends(stack, said, height)
     sides = [Side(contours, said, whole, at_last) for at_last in (False, True)]
     first, last = (roofs_of(levels, side) for side in sides)
-    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], filled, contours.hints.links)
+    traced = trace_tubes([*reversed(first.levels), *levels, *last.levels], mended, contours.hints.links)
     tubes = tuple(planned_tube(tube, len(levels), sides, inner_faces=inner_faces) for tube in traced.tubes)
     return TubePlan(with_openings(tubes), traced, (tuple(first.planned), tuple(last.planned)), areas)
 

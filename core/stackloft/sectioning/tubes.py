@@ -25,10 +25,12 @@ from stackloft.model.notices import Notice
 from stackloft.sectioning.level_changes import Joined, Straight, cornered
 from stackloft.sectioning.levels import Level, part_level, put_in_level
 from stackloft.sectioning.loop_numbers import Links
+from stackloft.sectioning.mends import Mends
 from stackloft.sectioning.sections_between import between
 from stackloft.sectioning.tube_links import Change, LinkFinder
 from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops, level_rows, part_row, pinned_row
 
+STRAIGHT = Mends()
 FILLING = (0.25, 0.5, 0.75)
 """Where levels are put in between loops that differ too much to be joined at once."""
 
@@ -41,14 +43,16 @@ class TubeSet:
     joints: tuple[tuple[FloatArray, ...], ...]
     """Each joint's edges, (k, 3) mm"""
     notices: tuple[Notice, ...]
+    limbs: frozenset[int]
+    """Sections after which a lying limb could be cut off, cut or not."""
 
 
 class _Builder:
     """Tubes while levels are added from the first to the last."""
 
-    def __init__(self, levels: list[Level], filled: frozenset[int], links: Mapping[str, Links]) -> None:
-        self.filled = filled
-        self.finder = LinkFinder(levels, links)
+    def __init__(self, levels: list[Level], mended: Mends, links: Mapping[str, Links]) -> None:
+        self.filled = mended.filled
+        self.finder = LinkFinder(levels, links, mended.limbs)
         self.done: list[TubeOfLoops] = []
         self.joints: list[tuple[FloatArray, ...]] = []
 
@@ -62,7 +66,7 @@ class _Builder:
 
 def trace_tubes(
     levels: list[Level],
-    filled: frozenset[int] = frozenset(),
+    mended: Mends = STRAIGHT,
     links: Mapping[str, Links] = MappingProxyType({}),
 ) -> TubeSet:
     """Return the tubes of a stack of levels.
@@ -71,8 +75,8 @@ def trace_tubes(
     ----------
     levels : list of Level
         In order along the axis.
-    filled : frozenset of int
-        Sections after which levels are put in even where loops go on one to one.
+    mended : Mends
+        What is done after which sections where a straight skin would fold or slip.
     links : mapping of str to pairs
         By the name of a section: links to the next one that are not to be sought, as `numbered_links`.
 
@@ -81,14 +85,15 @@ def trace_tubes(
     InputError
         Neighbouring levels cannot be linked.
     """
-    builder = _Builder(levels, filled, links)
+    builder = _Builder(levels, mended, links)
     rows = level_rows(levels[0])
     open_tubes = [builder.begin(row, np.inf) for row in rows]
     for before, after in pairwise(levels):
         open_tubes = _advance(builder, before, after, open_tubes)
     for tube in open_tubes:
         builder.finish(tube, np.inf)
-    return TubeSet(tuple(builder.done), tuple(builder.joints), tuple(builder.finder.notices))
+    finder = builder.finder
+    return TubeSet(tuple(builder.done), tuple(builder.joints), tuple(finder.notices), frozenset(finder.limbs))
 
 
 def _advance(builder: _Builder, before: Level, after: Level, tubes: list[TubeOfLoops]) -> list[TubeOfLoops]:

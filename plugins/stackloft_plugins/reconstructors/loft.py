@@ -31,7 +31,7 @@ from stackloft_plugins.reconstructors.end_reports import (
     row_end,
 )
 from stackloft_plugins.reconstructors.loft_tubes import loft_tubes
-from stackloft_plugins.reconstructors.skin_areas import refuse_slipped
+from stackloft_plugins.reconstructors.skin_areas import slipped_rows
 
 FEWEST = 2
 """Sections that a solid needs."""
@@ -99,7 +99,8 @@ class LoftReconstructor:
         sections = equal_points(product, self.points * more_points(product))
         planned = plan_ends(_stack_ends(product, sections), self._said(product), self._height(product))
         patches = _patches(sections, planned)
-        if folded_rows(patches[_inner_rows(patches, planned)]).any():
+        inner = patches[_inner_rows(patches, planned)]
+        if folded_rows(inner).any() or slipped_rows([inner]):
             return self._tubes(product)
         _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
@@ -152,11 +153,10 @@ def _self_check(
     sections: EqualSections,
     contours: ContourStack,
 ) -> None:
-    """Hold the skin between the outermost sections against their areas, and against what it goes over."""
+    """Hold the skin between the outermost sections against their areas."""
     rows = _inner_rows(patches, planned)
     names = tuple(section.name for section in contours.sections)
     check_against_areas(patches, rows, contours.positions, sections.curves.areas, names)
-    refuse_slipped([(patches[rows], names)])
 
 
 def _reports(

@@ -17,6 +17,7 @@ from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import Joint, JointRim, LoftedSolid, Shell, ShellEnd
 from stackloft.model.measurement import EndReport
 from stackloft.sectioning.equal_points import equal_points
+from stackloft.sectioning.mends import Mends
 from stackloft.sectioning.self_check import TubeVolume, check_tubes_against_areas, fold_error
 from stackloft.sectioning.stack_roofs import Roof
 from stackloft.sectioning.tube_ends import FACE, ON_SECTION, PlannedTube, TubeEnd, replace_row
@@ -28,7 +29,13 @@ from stackloft_plugins.reconstructors.end_reports import (
     is_plane,
     row_end,
 )
-from stackloft_plugins.reconstructors.skin_areas import Skinned, check_skin_areas, first_patch
+from stackloft_plugins.reconstructors.limb_choice import limbs_worth_cutting
+from stackloft_plugins.reconstructors.skin_areas import (
+    Skinned,
+    check_skin_areas,
+    first_patch,
+    slipped_sections,
+)
 
 SLIGHT = 0.05
 """Tubes thinner than this fraction of the largest section may fold unseen: a crumb, a tip of two sections."""
@@ -67,16 +74,7 @@ def loft_tubes(
             "a solid needs at least 2 sections", found=str(len(contours)),
             fix="give the whole stack, not one slice",
         )  # fmt: skip
-    filled: frozenset[int] = frozenset()
-    while True:
-        plan = plan_tubes(contours, said, height, filled, inner_faces=inner_faces)
-        skinned = [_skinned(tube, contours, count) for tube in plan.tubes]
-        folds = _folds(skinned)
-        if not folds:
-            break
-        if filled & folds.keys():
-            raise fold_error(*folds[min(filled & folds.keys())])
-        filled |= folds.keys()
+    plan, skinned = _mended(contours, count, said, height, inner_faces=inner_faces)
     _check(skinned, contours, plan.areas)
     check_skin_areas(skinned)
     reports = _reports(skinned, plan, contours.affine)
@@ -92,6 +90,45 @@ def loft_tubes(
         tuple(notices),
         _joints(plan),
     )
+
+
+def _mended(
+    contours: ContourStack,
+    count: int,
+    said: tuple[End, End],
+    height: float | None,
+    *,
+    inner_faces: bool,
+) -> tuple[TubePlan, list[Skinned]]:
+    """Return the tubes and their skins, mended where they fold or slip, limbs cut where that is less."""
+
+    def skinned_with(mended: Mends) -> tuple[TubePlan, list[Skinned], Mends]:
+        while True:
+            plan = plan_tubes(contours, said, height, mended, inner_faces=inner_faces)
+            skinned = [_skinned(tube, contours, count) for tube in plan.tubes]
+            folds = _folds(skinned)
+            more = mended.more(folds.keys(), slipped_sections(skinned), plan.traced.limbs)
+            if more == mended:
+                break
+            mended = more
+        if folds:
+            raise fold_error(*folds[min(folds)])
+        return plan, skinned, mended
+
+    plan, skinned, mended = skinned_with(Mends())
+    if plan.traced.limbs <= mended.limbs:
+        return plan, skinned
+    try:
+        every = replace(mended, limbs=plan.traced.limbs)
+        cut = skinned_with(every)
+        worth = limbs_worth_cutting(skinned, cut[1], every.limbs - mended.limbs, contours.positions)
+        if worth | mended.limbs == every.limbs:
+            return cut[:2]
+        if worth:
+            return skinned_with(replace(mended, limbs=mended.limbs | worth))[:2]
+    except InputError:
+        pass  # they cannot be cut
+    return plan, skinned
 
 
 def _skinned(tube: PlannedTube, contours: ContourStack, count: int) -> Skinned:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from stackloft.geometry.swept_area import areas_beyond
 from stackloft.model.arrays import FloatArray
 from stackloft.sectioning.equal_points import EqualSections
@@ -31,35 +33,46 @@ def check_skin_areas(skinned: list[Skinned]) -> None:
     Raises
     ------
     InputError
+        Naming the two rows between which there is the most false area.
     """
-    skins = []
-    for one in skinned:
-        first, rows = first_patch(one), one.tube.rows
-        skins.append((one.patches[first : first + len(rows) - 1], [row.name for row in rows]))
-    refuse_slipped(skins)
+    slips = slipped_rows([_between_rows(one) for one in skinned])
+    if slips:
+        k, row = slips[0]
+        rows = skinned[k].tube.rows
+        raise fold_error(rows[row].name, rows[row + 1].name)
 
 
-def refuse_slipped(skins: Sequence[tuple[FloatArray, Sequence[str]]]) -> None:
-    """Refuse skins whose columns slipped between two rows.
+def slipped_sections(skinned: list[Skinned]) -> set[int]:
+    """Return the sections after which, before the next one, columns slipped."""
+    found = set()
+    for k, row in slipped_rows([_between_rows(one) for one in skinned]):
+        low, high = skinned[k].tube.rows[row : row + 2]
+        if low.section is not None and high.section is not None:
+            found.add(low.section)
+    return found
+
+
+def slipped_rows(skins: Sequence[FloatArray]) -> list[tuple[int, int]]:
+    """Return (skin, row) where columns slipped between a row and the next, most false area first.
 
     Parameters
     ----------
-    skins : sequence of ((n - 1, N, 4, 4, 3) array, n names)
-        The patches between the rows of each, mm, and the rows' names.
-
-    Raises
-    ------
-    InputError
-        Naming the two rows between which there is the most false area.
+    skins : sequence of (n - 1, N, 4, 4, 3) arrays
+        The patches between the n rows of each, mm.
     """
-    found = [areas_beyond(patches) for patches, _ in skins if len(patches)]
-    named = [names for patches, names in skins if len(patches)]
-    whole = sum(area for _, area in found)
-    worst = max(range(len(found)), key=lambda k: float(found[k][0].max()), default=None)
-    if worst is None or found[worst][0].max() <= SLIPPED * whole:
-        return
-    row = int(found[worst][0].argmax())
-    raise fold_error(named[worst][row], named[worst][row + 1])
+    found = {k: areas_beyond(patches) for k, patches in enumerate(skins) if len(patches)}
+    whole = sum(area for _, area in found.values())
+    slips = [
+        (float(beyond[row]), k, int(row))
+        for k, (beyond, _) in found.items()
+        for row in np.flatnonzero(beyond > SLIPPED * whole)
+    ]
+    return [(k, row) for _, k, row in sorted(slips, key=lambda slip: -slip[0])]
+
+
+def _between_rows(one: Skinned) -> FloatArray:
+    first = first_patch(one)
+    return one.patches[first : first + len(one.tube.rows) - 1]
 
 
 def first_patch(one: Skinned) -> int:
