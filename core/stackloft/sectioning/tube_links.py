@@ -74,6 +74,8 @@ class LinkFinder:
             every = components(pairs, *regions, set())
         else:
             every = link_loops(*regions)
+        if said is None and _come_and_go(before, after, every):
+            self.notices.append(_apart(before, after))
         found: list[Linked] = []
         for linked in every:
             if linked.weak:
@@ -180,6 +182,24 @@ def _weak(before: Level, after: Level, linked: LinkedLoops) -> Notice:
         "weak-link",
         f"{before.name} to {after.name}: loops that overlap by less than 30 % of the smaller one were taken"
         f" for one part of the body ({_told(before, after, linked)}): cut thinner slices, or say links in"
+        " stack.toml",
+    )
+
+
+def _come_and_go(before: Level, after: Level, every: list[LinkedLoops]) -> bool:
+    """Return whether one piece ends and another begins between two sections."""
+    if before.section is None or after.section is None:
+        return False
+    gone = any(not is_hole(before.polygons[i]) for one in every if not one.after for i in one.before)
+    new = any(not is_hole(after.polygons[j]) for one in every if not one.before for j in one.after)
+    return gone and new
+
+
+def _apart(before: Level, after: Level) -> Notice:
+    return Notice(
+        "part-lost",
+        f"{before.name} to {after.name}: a part of the body ends and another begins between them, as their"
+        " loops do not overlap; if it is one part that moves sideways, cut thinner slices or say links in"
         " stack.toml",
     )
 

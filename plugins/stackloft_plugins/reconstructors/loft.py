@@ -23,6 +23,7 @@ from stackloft.sectioning.ends import PlannedEnd, StackEnds, plan_ends
 from stackloft.sectioning.equal_points import EqualSections, equal_points
 from stackloft.sectioning.self_check import check_against_areas
 from stackloft.sectioning.tube_plan import is_single, more_points
+from stackloft.sectioning.weak_overlap import weak_overlaps
 from stackloft_plugins.reconstructors.end_reports import (
     end_report,
     flipped,
@@ -105,7 +106,7 @@ class LoftReconstructor:
         _self_check(patches, planned, sections, product)
         reports = _reports(sections, planned, product)
         shell = Shell(read_only(patches), (_shell_end(planned[0]), _shell_end(planned[1])))
-        notices = (*sections.notices, *guess_notices(reports))
+        notices = (*sections.notices, *weak_overlaps(sections, product), *guess_notices(reports))
         return LoftedSolid((shell,), reports, product.affine, notices)
 
     def _tubes(self, contours: ContourStack) -> LoftedSolid:
