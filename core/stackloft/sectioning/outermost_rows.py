@@ -37,7 +37,8 @@ def arch_lengths(rows: list[Row]) -> FloatArray | None:
         return None
     moments = [central_moments(row.loop.points)[0] for row in rows]
     (short, long), axes = np.linalg.eigh(moments[0])
-    return None if long < 2.0 * short else np.array([axes[:, 1] @ m @ axes[:, 1] for m in moments])
+    lengths = np.array([axes[:, 1] @ m @ axes[:, 1] for m in moments])
+    return lengths if long > 2.0 * short > 0.0 < lengths.min() else None
 
 
 def half_widths(rows: list[Row]) -> FloatArray:
