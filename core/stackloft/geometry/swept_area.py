@@ -16,6 +16,8 @@ GRID = 128
 """Nodes along each side of the box in which the loops' difference is counted."""
 WEAK = 0.3
 """Loops that share less than this fraction of the smaller one lie beside each other, not one on the other."""
+SWAY = 0.25
+"""How far aside a half-way section may sway, in gaps."""
 _ROUND = bernstein(np.arange(4) / 4)
 _RIMS = bernstein(np.array([0.0, 0.5, 1.0]))
 
@@ -26,7 +28,8 @@ def areas_beyond(patches: FloatArray) -> tuple[FloatArray, float]:
     That is the area between the rims seen along the axis, and the wall between them; a skin that goes
     straight over has less: the root of the squares, piece by piece. It may bulge, and then is longer
     half-way, and goes out and back again: the wall's length is Simpson's mean with the half-way section's,
-    the area between the rims at least what the half-way section differs from both.
+    the area between the rims at least what the half-way section's differs from both, and the wall as high as
+    the way over the half-way section's centre.
 
     Parameters
     ----------
@@ -71,10 +74,21 @@ def _needed(loops: FloatArray, area: float) -> float:
     gap = float(loops[2, 0, 2] - loops[0, 0, 2])
     if area <= length * gap + out:
         return area
+    if min(sizes) > 0.0:
+        gap = _swayed(gap, polygon_centroid(half) - 0.5 * (polygon_centroid(low) + polygon_centroid(high)))
     apart, shared = _difference(low, high)
     if shared < WEAK * min(sizes[0], sizes[2]):  # the wall slants from one to the other
         gap = float(np.hypot(gap, np.linalg.norm(polygon_centroid(high) - polygon_centroid(low))))
     return length * gap + max(out, apart)
+
+
+def _swayed(gap: float, aside: FloatArray) -> float:
+    """Return the way over a gap when the half-way section lies aside, as under a stack pushed askew.
+
+    A little: what lies farther aside is no sway.
+    """
+    sway = float(np.linalg.norm(aside))
+    return 2.0 * float(np.hypot(0.5 * gap, sway)) if sway < SWAY * gap else gap
 
 
 def _difference(low: FloatArray, high: FloatArray) -> tuple[float, float]:
