@@ -189,8 +189,10 @@ def _corner_places(curves: CurveStack, section: int, corners: IntArray) -> Float
 
 def _in_plane(curves: CurveStack, seams: _Seams) -> list[FloatArray]:
     """Return the corners of each section, (c_i, 2) mm."""
-    at = zip(seams.corners, seams.phases, strict=True)
-    return [curves.at(np.full(len(own), k), own + phase)[0] for k, (own, phase) in enumerate(at)]
+    counts = [len(own) for own in seams.corners]
+    section = np.repeat(np.arange(len(counts)), counts)
+    points = curves.at(section, np.concatenate(seams.corners) + seams.phases[section])[0]
+    return np.split(points, np.cumsum(counts)[:-1])
 
 
 def _first_guess(chains: list[CornerChain], count: int, seams: _Seams) -> tuple[FloatArray, BoolArray]:
