@@ -71,13 +71,22 @@ def _loop_moments(
     loops: list[FloatArray], centre: FloatArray, powers: list[Powers]
 ) -> tuple[FloatArray, FloatArray]:
     """Return each loop's area, (n,), and its moments about a centre, (len(powers), n), by Green's theorem."""
-    first = np.cumsum([0, *(len(p) for p in loops[:-1])])
-    start = np.concatenate(loops) - centre
-    end = np.concatenate([np.roll(p, -1, axis=0) for p in loops]) - centre
-    rise = end - start
-    x, y = (start[:, k] + _GAUSS_T[:, None] * rise[:, k] for k in (0, 1))
-    signed = np.add.reduceat(_GAUSS_W @ x * rise[:, 1], first)
-    found = [
-        np.add.reduceat(_GAUSS_W @ (x ** (p + 1) * y**q) * rise[:, 1], first) / (p + 1) for p, q, _ in powers
-    ]
-    return np.abs(signed), np.sign(signed) * np.array(found)
+    orders = np.array(powers)
+    found = np.empty((1 + len(powers), len(loops)))
+    for k, loop in enumerate(loops):
+        start = loop.T - centre[:, None]
+        rise = np.concatenate([start[:, 1:], start[:, :1]], axis=1) - start
+        x, y = (start[:, None] + _GAUSS_T[:, None] * rise[:, None]).reshape(2, -1)
+        across, up = _powers(x, int(orders[:, 0].max()) + 1), _powers(y, int(orders[:, 1].max()))
+        every = across @ ((_GAUSS_W[:, None] * rise[1]).ravel() * up).T  # of every x^p y^q at once
+        found[0, k], found[1:, k] = every[1, 0], every[orders[:, 0] + 1, orders[:, 1]] / (orders[:, 0] + 1)
+    return np.abs(found[0]), np.sign(found[0]) * found[1:]
+
+
+def _powers(x: FloatArray, highest: int) -> FloatArray:
+    """Return 1, x, x² … as rows."""
+    rows = np.empty((highest + 1, len(x)))
+    rows[0] = 1.0
+    for k in range(highest):
+        np.multiply(rows[k], x, out=rows[k + 1])
+    return rows

@@ -60,6 +60,20 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
     return float(weights @ flux) / 3.0, float(weights @ length)
 
 
+def patch_areas(patches: FloatArray, degree: int = 9) -> FloatArray:
+    """Return the area of each patch, mm², (...) of (..., 4, 4, 3) control points, as `volume_and_area` has it."""
+    rules, weights = _surface_rule(degree)
+    slopes = rules[len(weights) :]
+    controls = patches.reshape(-1, 16, 3)
+    areas = np.empty(len(controls))
+    for start in range(0, len(controls), AT_ONCE):
+        planes = np.ascontiguousarray(controls[start : start + AT_ONCE].transpose(1, 2, 0)).reshape(16, -1)
+        along, across = (slopes @ planes).reshape(2, len(weights), 3, -1)
+        normal = _cross(along, across)
+        areas[start : start + AT_ONCE] = weights @ np.sqrt(np.einsum("gdn,gdn->gn", normal, normal))
+    return areas.reshape(patches.shape[:-3])
+
+
 @lru_cache
 def _surface_rule(degree: int) -> tuple[FloatArray, FloatArray]:
     """Return what makes P, P_u, P_v at g² Gauss points of control points, (3·g², 16), and weights (g²)."""

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.geometry.bezier_patch import bernstein, evaluate
-from stackloft.geometry.patch_integrals import solid_integrals
+from stackloft.geometry.patch_integrals import patch_areas
 from stackloft.geometry.polygon_distance import inside_grid
-from stackloft.geometry.shoelace import polygon_area, polygon_centroid, polygon_perimeter
+from stackloft.geometry.shoelace import polygon_centroid
 
 FloatArray = NDArray[np.float64]
 
@@ -52,34 +52,35 @@ def areas_beyond(patches: FloatArray) -> tuple[FloatArray, float]:
     >>> (areas_beyond(skin(rows))[0] > 10.0).tolist()
     [False, True]
     """
-    areas = np.array(
-        [solid_integrals(patches[k : k + 1], (0.0, 0.0), np.eye(4), degree=4)[1] for k in range(len(patches))]
-    )
+    areas = patch_areas(patches, degree=4).sum(axis=1)
     rims = evaluate(patches, _RIMS, _ROUND)  # (rows, columns, 3, 4, 3)
     loops = np.moveaxis(rims, 2, 1).reshape(len(patches), 3, -1, 3)
-    needed = np.array([_needed(own, area) for own, area in zip(loops, areas, strict=True)])
-    return areas - needed, float(areas.sum())
+    return areas - _needed(loops, areas), float(areas.sum())
 
 
-def _needed(loops: FloatArray, area: float) -> float:
-    """Return what there is to go over from the first to the last of three loops (3, k, 3), mm².
+def _needed(loops: FloatArray, areas: FloatArray) -> FloatArray:
+    """Return what there is to go over from the first to the last of three loops each, (rows,) mm².
 
-    The loops' difference is counted only where an area needs it.
+    The loops' difference is counted only where an area, (rows,), needs it.
     """
-    low, half, high = loops[..., :2]
-    lengths = [polygon_perimeter(loop) for loop in (low, half, high)]
-    length = (lengths[0] + 4.0 * lengths[1] + lengths[2]) / 6.0
-    sizes = [abs(polygon_area(loop)) for loop in (low, half, high)]
-    out = float(np.abs(np.diff(sizes)).sum())
-    gap = float(loops[2, 0, 2] - loops[0, 0, 2])
-    if area <= length * gap + out:
-        return area
-    if min(sizes) > 0.0:
-        gap = _swayed(gap, polygon_centroid(half) - 0.5 * (polygon_centroid(low) + polygon_centroid(high)))
-    apart, shared = _difference(low, high)
-    if shared < WEAK * min(sizes[0], sizes[2]):  # the wall slants from one to the other
-        gap = float(np.hypot(gap, np.linalg.norm(polygon_centroid(high) - polygon_centroid(low))))
-    return length * gap + max(out, apart)
+    plane = loops[..., :2] - loops[:, :, :1, :2]  # (rows, 3, k, 2), each loop from its own first point
+    steps = np.roll(plane, -1, axis=2) - plane
+    lengths = np.hypot(steps[..., 0], steps[..., 1]).sum(axis=2) @ np.array([1.0, 4.0, 1.0]) / 6.0
+    sizes = np.abs(0.5 * (plane[..., 0] * steps[..., 1] - plane[..., 1] * steps[..., 0]).sum(axis=2))
+    out = np.abs(np.diff(sizes)).sum(axis=1)
+    gaps = loops[:, 2, 0, 2] - loops[:, 0, 0, 2]
+    needed = areas.copy()
+    for k in np.flatnonzero(areas > lengths * gaps + out):
+        low, half, high = loops[k, ..., :2]
+        gap = float(gaps[k])
+        if sizes[k].min() > 0.0:
+            middle = 0.5 * (polygon_centroid(low) + polygon_centroid(high))
+            gap = _swayed(gap, polygon_centroid(half) - middle)
+        apart, shared = _difference(low, high)
+        if shared < WEAK * sizes[k, ::2].min():  # the wall slants from one to the other
+            gap = float(np.hypot(gap, np.linalg.norm(polygon_centroid(high) - polygon_centroid(low))))
+        needed[k] = lengths[k] * gap + max(float(out[k]), apart)
+    return needed
 
 
 def _swayed(gap: float, aside: FloatArray) -> float:
