@@ -61,7 +61,7 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
 
 
 def patch_areas(patches: FloatArray, degree: int = 9) -> FloatArray:
-    """Return the area of each patch, mm², (...) of (..., 4, 4, 3) control points, as `volume_and_area` has it."""
+    """Return the area of each of (..., 4, 4, 3) patches, mm², as `volume_and_area` has their sum."""
     rules, weights = _surface_rule(degree)
     slopes = rules[len(weights) :]
     controls = patches.reshape(-1, 16, 3)

@@ -13,7 +13,7 @@ from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
-from stackloft.sectioning.ahead import AHEAD, Behind, worked_ahead
+from stackloft.sectioning.ahead import THREADS, Behind, ahead_on, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
@@ -29,8 +29,6 @@ TOGETHER = 8
 """Slices traced together."""
 HELD = 4_000_000
 """Bytes: slices whose fields take more are traced without waiting for others."""
-LARGE = 4_000_000
-"""Pixels: of larger pictures no more are held than there are threads."""
 _NO_PICTURE: Picture = np.zeros((0, 0), np.uint8)
 _NAMED = 3  # slices named in a notice that stands for several
 
@@ -60,7 +58,7 @@ class ContourSink:
     def begin(self, segmentation: Segmentation) -> None:
         """Get ready for the slices of `segmentation`."""
         self._segmentation = segmentation
-        self._waiting, self._behind = [], Behind()
+        self._waiting, self._behind = [], Behind(THREADS if ahead_on(segmentation.stack) else 0)
 
     def add(self, index: int, picture: Picture, section_field: SectionField) -> None:  # noqa: ARG002 - a Sink
         """Have slice `index` traced, together with some before and after it.
@@ -179,8 +177,9 @@ def decoded_ahead(
 ) -> Iterator[tuple[int, Picture, SectionField]]:
     """Yield slice number, picture and field in order, decoding and segmenting a little ahead.
 
-    Two threads work ahead (`worked_ahead`), less far where pictures are large. Where nobody looks at the
-    `pictures`, an empty one is given and nothing of them stays in memory.
+    Two threads work ahead (`worked_ahead`), less far where pictures are large, and not at all on a scan's
+    small slices (`ahead_on`). Where nobody looks at the `pictures`, an empty one is given and nothing of them
+    stays in memory.
     """
 
     def work(index: int) -> tuple[int, Picture, SectionField]:
@@ -189,9 +188,8 @@ def decoded_ahead(
         picture = segmentation.stack.decode(index)
         return index, picture, segmentation.field_beside(index, picture)
 
-    rows, columns = segmentation.stack.shape
     with without_opencv_threads():
-        yield from worked_ahead(len(segmentation), work, AHEAD if rows * columns < LARGE else 1)
+        yield from worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:

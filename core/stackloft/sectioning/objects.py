@@ -26,12 +26,13 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import Beyond, SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
-from stackloft.sectioning.ahead import worked_ahead
+from stackloft.sectioning.ahead import ahead_on, worked_ahead
 from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, enclosed, placed
 from stackloft.sectioning.cut_bodies import cut_apart
 from stackloft.sectioning.kept_slices import Keeper, KeptSlices
 from stackloft.sectioning.linked_pieces import LinkedPieces
 from stackloft.sectioning.object_notices import cut_notice, stray_notice
+from stackloft.sectioning.opencv_threads import without_opencv_threads
 from stackloft.sectioning.slice_look import SliceLook, framed_window, look_at
 from stackloft.sectioning.voids import VoidFinder, void_notice
 
@@ -130,14 +131,16 @@ def _linked(segmentation: Segmentation) -> _Linked:
         picture = segmentation.stack.decode(index)
         return picture, look_at(segmentation, picture, segmentation.field_of(index, picture))
 
-    for index, (picture, look) in enumerate(worked_ahead(len(segmentation), work)):
-        window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)
-        keeper.take(index, picture, window if len(look.sizes) else None)
-        links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner, outline=look.outline)
-        if not segmentation.labels:
-            voids.add(look.body, look.closed, look.framed)
-        if look.outline is not None:
-            outlines[index] = look.outline
+    with without_opencv_threads():
+        looks = worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
+        for index, (picture, look) in enumerate(looks):
+            window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)
+            keeper.take(index, picture, window if len(look.sizes) else None)
+            links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner, outline=look.outline)
+            if not segmentation.labels:
+                voids.add(look.body, look.closed, look.framed)
+            if look.outline is not None:
+                outlines[index] = look.outline
     keeper.end()
     return _Linked(links, voids, kept, outlines)
 

@@ -28,7 +28,7 @@ from stackloft.model.arrays import BoolArray
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
-from stackloft.sectioning.ahead import worked_ahead
+from stackloft.sectioning.ahead import AHEAD, SMALL, worked_ahead
 from stackloft_plugins.segmenters.grey import Grey, grey_levels
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 
@@ -149,7 +149,8 @@ def _bands(sample: list[Levels], level: float, sign: float) -> tuple[Levels, Lev
 def _gathered(
     sample: list[Levels], level: float, sign: float, within: tuple[int, int | None]
 ) -> tuple[Levels, Levels]:
-    found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign, within)))
+    ahead = AHEAD if sample[0].size >= SMALL else 0
+    found = list(worked_ahead(len(sample), lambda k: _slice_bands(sample[k], level, sign, within), ahead))
     inside, outside = (np.concatenate(bands) for bands in zip(*found, strict=True))
     return inside, outside
 
