@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.flat_view import taken
 from stackloft.geometry.noise_floor import NoiseFloor
-from stackloft.model.arrays import BoolArray, FloatArray
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.notices import Notice
 from stackloft.model.slice_stack import Picture, SliceStack
 
@@ -66,8 +67,18 @@ class SectionField:
         >>> section.relative_where(np.array([[False, True]])).tolist()
         [0.5]
         """
-        values = self.values[mask]
-        level = self.level if self.local_levels is None else self.local_levels[mask]
+        return self.relative_at(np.flatnonzero(mask))
+
+    def relative_at(self, numbers: IntArray) -> FloatArray:
+        """Return the same at pixels by their numbers, (n), counted row after row.
+
+        Examples
+        --------
+        >>> SectionField(np.array([[2, 3], [4, 5]], dtype=np.int16), 2.5).relative_at(np.array([1, 2])).tolist()
+        [0.5, 1.5]
+        """
+        values = taken(self.values, numbers)
+        level = self.level if self.local_levels is None else taken(self.local_levels, numbers)
         grey = values.astype(np.float64) if self.noise is None else self.noise.taken_off(values)
         return np.asarray(np.subtract(grey, level, out=grey))
 

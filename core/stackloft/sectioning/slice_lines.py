@@ -63,7 +63,7 @@ class Line:
 
     def __init__(self, crossings: Crossings) -> None:
         self.crossings = crossings
-        self.rough: FloatArray = np.empty((len(crossings.row), 2))
+        self.rough: FloatArray = np.empty((2, len(crossings.row))).T  # a coordinate's values side by side
         self.rough[:, 0] = crossings.column + 0.5 * ~crossings.down
         self.rough[:, 1] = crossings.row + 0.5 * crossings.down
         self.area = polygon_area(self.rough)

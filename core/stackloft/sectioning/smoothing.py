@@ -101,10 +101,11 @@ def _without_repeats(points: FloatArray, marks: IntArray, least: float) -> tuple
 
 def chords(points: FloatArray) -> FloatArray:
     """Return the distance from each vertex of a closed polygon to the next one."""
-    step = np.empty_like(points)
-    np.subtract(points[1:], points[:-1], out=step[:-1])
-    np.subtract(points[0], points[-1], out=step[-1])
-    return np.sqrt(step[:, 0] ** 2 + step[:, 1] ** 2)
+    place = np.ascontiguousarray(points).view(np.complex128)[:, 0]  # rows of two take twice as long
+    step = np.empty_like(place)
+    np.subtract(place[1:], place[:-1], out=step[:-1])
+    step[-1] = place[0] - place[-1]
+    return np.abs(step)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.geometry.flat_view import flat_view
 from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import FloatArray, IntArray
 from stackloft.sectioning.marching_squares import Crossings
@@ -110,13 +111,13 @@ def points_of_lines(lines: Sequence[LevelLine]) -> list[FloatArray]:
 
 def _around(line: LevelLine) -> FloatArray:
     """Return the 4 × 3 pixels around every edge, (12, n): by threes across it, from before its first on."""
-    width = line.field.shape[1]
+    flat, width = flat_view(line.field)
     steps, sides = np.arange(-1, 3)[:, None], np.arange(-1, 2)
     offsets = np.stack([steps + width * sides, width * steps + sides], axis=-1).reshape(12, 2)
     base = line.crossings.row * width + line.crossings.column
     at = offsets.take(line.crossings.down.view(np.int8), axis=1)
     at += base
-    values = line.field.ravel().take(at)
+    values = flat.take(at)
     return values.astype(np.float64) if line.noise is None else line.noise.taken_off(values)
 
 

@@ -193,9 +193,9 @@ def _sums(
     others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
     common, united = own & others[0] & others[1], own | others[0] | others[1]
     inside, near = eroded(common, disc(zone)), dilated(united, disc(zone))
-    between = (inside ^ near).view(np.bool_)
-    edge = current.section.relative_where(between)
-    full = edge[common[between].view(np.bool_)]
+    between = np.flatnonzero((inside ^ near).view(np.bool_))
+    edge = current.section.relative_at(between)
+    full = edge[common.ravel().take(between).view(np.bool_)]
     body, background = ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
     return _SliceSums(
         inside=cv2.countNonZero(inside),
