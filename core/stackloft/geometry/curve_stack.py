@@ -22,7 +22,7 @@ IntArray = NDArray[np.int64]
 
 THREADS = 2
 """Threads that fit curves, where there are many."""
-AT_ONCE = 8_000
+AT_ONCE = 16_000
 """Vertices worked on at once, so that what is in between stays in the processor's cache."""
 _JOINED = ("points", "ends", "leaving", "arriving", "lengths", "starts", "centroids", "areas")
 MANY = 128
