@@ -73,9 +73,10 @@ def chain_lines(bits: NDArray[np.uint8], margin: int) -> list[Crossings] | None:
 
 def near_border(chain: NDArray[Any], shape: tuple[int, ...], margin: int) -> bool:
     """Return whether a chain comes within `margin` pixels of the border of a crop."""
-    x, y = chain[:, 0], chain[:, 1]
-    low, right, bottom = min(x.min(), y.min()), x.max(), y.max()
-    return bool(low < margin or right > shape[1] - 1 - margin or bottom > shape[0] - 1 - margin)
+    left, top, width, height = cv2.boundingRect(chain)
+    return (
+        min(left, top) < margin or left + width > shape[1] - margin or top + height > shape[0] - margin
+    )
 
 
 def line_around(chain: NDArray[Any]) -> Crossings:

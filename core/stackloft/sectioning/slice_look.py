@@ -40,18 +40,24 @@ def look_at(segmentation: Segmentation, picture: Picture, section: SectionField)
     """Return one slice's pieces, their pixels and labels, and the background that they close in."""
     if segmentation.labels:
         (pieces, sizes, labels, corner), outline = _labelled_pieces(picture), None
+        above = pieces > 0
     else:
-        found = body_pieces(section.above())
+        above = section.above()
+        found = body_pieces(above)
         pieces, sizes = found.pieces, found.sizes
         corner = (section.offset[0] + found.corner[0], section.offset[1] + found.corner[1])
         outline = None if found.outline is None else found.outline + np.array(section.offset[::-1], np.int32)
         labels = np.zeros(len(sizes), dtype=np.int64)
     rows, columns = framed_window(pieces.shape, corner, FRAME, picture.shape)
-    body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
-    top, left = corner[0] - rows.start, corner[1] - columns.start
-    body[top : top + pieces.shape[0], left : left + pieces.shape[1]] = pieces > 0
+    if above.shape == picture.shape[:2]:
+        body = above[rows, columns]
+    else:
+        body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
+        top, left = corner[0] - rows.start, corner[1] - columns.start
+        body[top : top + pieces.shape[0], left : left + pieces.shape[1]] = pieces > 0
     looked = len(sizes) and not segmentation.labels
-    closed = closed_background(body, solid=outline is not None) if looked else None
+    apart = body.shape == tuple(side + 2 * FRAME for side in pieces.shape)
+    closed = closed_background(body, solid=outline is not None, apart=apart) if looked else None
     return SliceLook(pieces, sizes, labels, corner, outline, body, closed, (rows.start, columns.start))
 
 

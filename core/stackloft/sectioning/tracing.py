@@ -116,9 +116,11 @@ def _left_out(share: float, name: str) -> Notice:
 
 def _sides(line: Line, grid: Grid, shape: tuple[int, int]) -> list[str]:
     """Return the picture's edges that a line runs along: it is closed between them and the last pixels."""
-    x, y = line.rough[:, 0], line.rough[:, 1]
     row, column = grid.first
     rows, columns = shape
+    if min(row, column) >= 0 and row + grid.field.shape[0] <= rows and column + grid.field.shape[1] <= columns:
+        return []
+    x, y = line.rough[:, 0], line.rough[:, 1]
     found = {
         "top": y.min() + row < 0,
         "bottom": y.max() + row > rows - 1,

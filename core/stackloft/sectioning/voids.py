@@ -85,40 +85,41 @@ def void_notice(voids: float, solid: float, *, filled: bool) -> tuple[Notice, ..
     return (Notice("voids-kept", f"{share} are left out; --set segmenter.voids=fill counts them as body"),)
 
 
-def closed_background(body: BoolArray, *, solid: bool = False) -> Pieces | None:
+def closed_background(body: BoolArray, *, solid: bool = False, apart: bool = False) -> Pieces | None:
     """Return the numbered pieces of background that `outer_background` does not reach; None: there are none.
 
     Most slices have none, which their outlines tell without looking at every pixel. `solid`: the body is
-    known to have no hole.
+    known to have no hole; `apart`: to lie more than two cracks' width off the border.
     """
-    if _surely_open(body.view(np.uint8), solid=solid):
+    if _surely_open(body.view(np.uint8), solid=solid, apart=apart):
         return None
     pieces, sizes = pieces_of(~(body | outer_background(body)), connectivity=8)
     return pieces if len(sizes) else None
 
 
-def _surely_open(bits: NDArray[np.uint8], *, solid: bool) -> bool:
+def _surely_open(bits: NDArray[np.uint8], *, solid: bool, apart: bool) -> bool:
     """Return True when there is no hole, none behind a passage closed by the disc, and no long crack.
 
     The disc's closing of the body is the complement of the background's opening.
     """
-    if any(edge.any() for edge in _strips(bits, 1)):
+    if not apart and any(edge.any() for edge in _strips(bits, 1)):
         return False
     if not solid and _has_holes(np.ascontiguousarray(bits)):
         return False
     framed = bits
-    if any(edge.any() for edge in _strips(bits, 2 * CRACK)):
+    if not apart and any(edge.any() for edge in _strips(bits, 2 * CRACK)):
         around = (2 * CRACK,) * 4
         framed = np.asarray(
             cv2.copyMakeBorder(bits, *around, borderType=cv2.BORDER_CONSTANT, value=0), np.uint8
         )
     wide = cv2.dilate(framed, _DISC)
-    if _has_holes(wide):
+    # one piece stays one when it grows: more lines than its outline are holes, and are counted sooner
+    if len(cv2.findContoursLinkRuns(wide)[0]) > 1 if solid else _has_holes(wide):
         return False
-    cracks = cv2.subtract(cv2.erode(wide, _DISC), framed)
-    if cv2.countNonZero(cracks) < _FEWEST:
+    shut = cv2.erode(wide, _DISC)
+    if cv2.countNonZero(shut) - cv2.countNonZero(framed) < _FEWEST:
         return True
-    return bool(pieces_of(cracks > 0, connectivity=8)[1].max() < _FEWEST)
+    return bool(pieces_of(cv2.subtract(shut, framed) > 0, connectivity=8)[1].max() < _FEWEST)
 
 
 def _strips(bits: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], ...]:
