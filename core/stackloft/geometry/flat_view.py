@@ -1,4 +1,4 @@
-"""A picture's pixels as one row, so that they can be taken by number; a window of a larger one is not copied."""
+"""A picture's pixels as one row, to be taken by number; a window of a larger picture is not copied."""
 
 from __future__ import annotations
 

@@ -74,7 +74,8 @@ class SectionField:
 
         Examples
         --------
-        >>> SectionField(np.array([[2, 3], [4, 5]], dtype=np.int16), 2.5).relative_at(np.array([1, 2])).tolist()
+        >>> section = SectionField(np.array([[2, 3], [4, 5]], dtype=np.int16), 2.5)
+        >>> section.relative_at(np.array([1, 2])).tolist()
         [0.5, 1.5]
         """
         values = taken(self.values, numbers)

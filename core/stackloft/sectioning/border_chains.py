@@ -74,9 +74,7 @@ def chain_lines(bits: NDArray[np.uint8], margin: int) -> list[Crossings] | None:
 def near_border(chain: NDArray[Any], shape: tuple[int, ...], margin: int) -> bool:
     """Return whether a chain comes within `margin` pixels of the border of a crop."""
     left, top, width, height = cv2.boundingRect(chain)
-    return (
-        min(left, top) < margin or left + width > shape[1] - margin or top + height > shape[0] - margin
-    )
+    return min(left, top) < margin or left + width > shape[1] - margin or top + height > shape[0] - margin
 
 
 def line_around(chain: NDArray[Any]) -> Crossings:

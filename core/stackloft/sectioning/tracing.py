@@ -118,7 +118,11 @@ def _sides(line: Line, grid: Grid, shape: tuple[int, int]) -> list[str]:
     """Return the picture's edges that a line runs along: it is closed between them and the last pixels."""
     row, column = grid.first
     rows, columns = shape
-    if min(row, column) >= 0 and row + grid.field.shape[0] <= rows and column + grid.field.shape[1] <= columns:
+    if (
+        min(row, column) >= 0
+        and row + grid.field.shape[0] <= rows
+        and column + grid.field.shape[1] <= columns
+    ):
         return []
     x, y = line.rough[:, 0], line.rough[:, 1]
     found = {

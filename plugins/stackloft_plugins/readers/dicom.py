@@ -29,7 +29,7 @@ from stackloft.model.slice_stack import Picture, SectionKind, SliceStack
 from stackloft_plugins.readers.dicom_codecs import check_decoder
 from stackloft_plugins.readers.dicom_files import dicom_files, seems_dicom
 from stackloft_plugins.readers.dicom_frame import Frame
-from stackloft_plugins.readers.dicom_header import read_frames
+from stackloft_plugins.readers.dicom_frames import read_frames
 from stackloft_plugins.readers.dicom_location import check_locations
 from stackloft_plugins.readers.dicom_objects import without_objects
 from stackloft_plugins.readers.dicom_pixels import decode_frame
@@ -105,13 +105,7 @@ class DicomReader:
             places; a mosaic; no decoder. Files, what was found and what was expected are named.
         """
         pictures, drawn = without_objects(dicom_files(path))
-        every = series_of(
-            [
-                frame
-                for item in pictures
-                for frame in read_frames(item, keep_identifiers=self.keep_identifiers)
-            ]
-        )
+        every = series_of(list(read_frames(pictures, keep_identifiers=self.keep_identifiers)))
         chosen, several = choose_series(every, self.series, str(path))
         shaped, left_out = one_shape(chosen, leave_out=self.leave_out)
         frames, one = one_volume(shaped, self.volume)

@@ -11,10 +11,9 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.errors import InputError
-from stackloft_plugins.readers.dicom_file import ClampedFile, read_elements, safely
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_lookup import Lookup
-from stackloft_plugins.readers.dicom_plain import PlainHeader, plain_header
+from stackloft_plugins.readers.dicom_plain import PlainHeader
 from stackloft_plugins.readers.dicom_values import number_of, positive_of, word_of, words_of
 
 if TYPE_CHECKING:
@@ -35,34 +34,6 @@ KEYWORDS = (
     "PerFrameFunctionalGroupsSequence",
 )
 """The elements that are read; names, birth dates and free text are not among them."""
-
-
-def read_frames(path: Path, *, keep_identifiers: bool = False) -> tuple[Frame, ...]:
-    """Return the frames of a DICOM file from its header; no pixel is read.
-
-    Raises
-    ------
-    InputError
-        Damaged, no image, or without a place in space; the file is named, nothing private is quoted.
-    """
-    plain = None if keep_identifiers else _plain_frame(path)
-    if plain is not None:
-        return (plain,)
-    keywords = (*KEYWORDS, *PRIVATE) if keep_identifiers else KEYWORDS
-    with safely(path, "its header"), ClampedFile(path) as stream:
-        return frames_of(read_elements(stream, keywords), path, keep_identifiers=keep_identifiers)
-
-
-def _plain_frame(path: Path) -> Frame | None:
-    """Return the one frame of a plain file; None when pydicom must look at it, or say what is wrong."""
-    try:
-        header = plain_header(path, KEYWORDS)
-        if header is None:
-            return None
-        frames = frames_of(header, path)
-        return replace(frames[0], samples_at=header.samples()) if len(frames) == 1 else None
-    except (InputError, OSError, TypeError, ValueError, AttributeError, OverflowError):
-        return None
 
 
 def frames_of(
@@ -152,12 +123,12 @@ def _placed(common: Frame, lookup: Lookup, number: int, name: str) -> Frame:
         common,
         name=name,
         number=number,
-        order=(*_order(lookup), number),
+        order=(*order_of(lookup), number),
         position=frozen_floats(position),
         axes=_axes(cosines, common.path),
         spacing=(float(spacing[0]), float(spacing[1])),
         thickness=positive_of(lookup.get("PixelMeasuresSequence", "SliceThickness")),
-        location=number_of(lookup.get("PixelMeasuresSequence", "SliceLocation")),
+        location=location_of(lookup),
         slope=1.0 if slope is None else float(slope[0]),
         intercept=0.0 if intercept is None else float(intercept[0]),
         rescaled=slope is not None or intercept is not None,
@@ -223,7 +194,13 @@ def _padding(data: Dataset | PlainHeader) -> tuple[int, int] | None:
     return min(ends), max(ends)
 
 
-def _order(lookup: Lookup) -> tuple[int, ...]:
+def location_of(lookup: Lookup) -> float | None:
+    """Return a frame's Slice Location, mm."""
+    return number_of(lookup.get("PixelMeasuresSequence", "SliceLocation"))
+
+
+def order_of(lookup: Lookup) -> tuple[int, ...]:
+    """Return what tells which of several volumes a frame belongs to, but for its number in the file."""
     values = (
         lookup.get("FrameContentSequence", "FrameAcquisitionNumber") or lookup.get("", "AcquisitionNumber"),
         lookup.get("FrameContentSequence", "TemporalPositionIndex")

@@ -14,7 +14,7 @@ odd text) is no error: None says that pydicom must read the file.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -37,6 +37,8 @@ _SHORT = frozenset(
 _NUMBERS = {b"US": "H", b"SS": "h", b"UL": "I", b"SL": "i", b"FD": "d", b"FL": "f"}
 _TEXTS = frozenset({b"CS", b"UI", b"DS", b"IS", b"LO", b"SH"})
 _UNDEFINED = 0xFFFFFFFF
+_ALWAYS = frozenset({_SYNTAX, _PIXELS})
+_ELEMENT = struct.Struct("<HH2sH").unpack_from
 
 Tag = tuple[int, int]
 
@@ -115,43 +117,44 @@ def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
     wanted = _tags(keywords)
     values: dict[str, Any] = {}
     try:
-        for tag, kind, start, length in _elements(head):
+        for tag, kind, start, length in _elements(head, wanted):
             if tag == _PIXELS:
                 return PlainHeader(values, start, length)
-            value = _value(kind, head[start : start + length]) if tag == _SYNTAX or tag in wanted else None
+            value = _value(kind, head[start : start + length])
             if tag in wanted:
                 values[wanted[tag]] = value
-            elif tag == _SYNTAX and value != EXPLICIT_LITTLE:
+            elif value != EXPLICIT_LITTLE:
                 return None
     except (struct.error, ValueError):
         return None
     return None
 
 
-def _elements(head: bytes) -> Iterator[tuple[Tag, bytes, int, int]]:
-    """Yield tag, type, start and length of the elements up to the pixel data.
+def _elements(head: bytes, wanted: Container[Tag]) -> Iterator[tuple[Tag, bytes, int, int]]:
+    """Yield tag, type, start and length of the wanted elements, the transfer syntax and the pixel data.
 
     Raises
     ------
     ValueError
         An element that is not plain.
     """
-    at, last = 132, (0, 0)
+    at, last, end = 132, (0, 0), len(head)
     while last != _PIXELS:
-        group, element, kind, short = struct.unpack_from("<HH2sH", head, at)
+        group, element, kind, length = _ELEMENT(head, at)
         tag = (group, element)
         if kind in _SHORT:
-            start, length = at + 8, short
+            start = at + 8
         elif kind in _LONG:
             start, length = at + 12, int(struct.unpack_from("<I", head, at + 8)[0])
         else:
             raise ValueError(kind)
         at = start + length
-        plain = kind in {b"OW", b"OB"} if tag == _PIXELS else at <= len(head)
+        plain = at <= end if tag != _PIXELS else kind in {b"OW", b"OB"}
         if not last < tag <= _PIXELS or not plain or length == _UNDEFINED:
             raise ValueError(tag)
-        yield tag, kind, start, length
         last = tag
+        if tag in wanted or tag in _ALWAYS:
+            yield tag, kind, start, length
 
 
 @lru_cache(maxsize=4096)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 
 READABLE = ("JPEG", "PNG", "TIFF", "BMP", "WEBP")
@@ -67,6 +68,7 @@ def kind_of_bytes(head: bytes) -> str | None:
     return None
 
 
+@lru_cache(maxsize=8192)
 def natural_key(name: str) -> tuple[tuple[str | int, ...], str]:
     """Return a sort key that reads digits as numbers.
 
