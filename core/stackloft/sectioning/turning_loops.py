@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.traced_corners import STEP, CornerRules, with_corners
 
@@ -61,58 +61,52 @@ def may_turn(loops: Sequence[Loop], pixels: Sequence[float], rules: CornerRules)
     [False, True]
     """
     turning = np.ones(len(loops), dtype=np.bool_)
-    ways = [_way(loop.points) / pixel for loop, pixel in zip(loops, pixels, strict=True)]
-    around = [float(_lengths(np.diff(way)).sum()) + abs(way[-1]) for way in ways]
-    usual = [k for k, length in enumerate(around) if length / 16 >= rules.window]  # others have shorter sides
+    ways = [_way(loop.points, pixel) for loop, pixel in zip(loops, pixels, strict=True)]
+    steps = [np.abs(np.diff(way)) for way in ways]
+    shortest = 16 * rules.window  # others have shorter sides
+    usual = [k for k, own in enumerate(steps) if own.sum() >= shortest]
     if usual:
-        turning[usual] = _turns([ways[k] for k in usual], rules)
+        turning[usual] = _turns([ways[k] for k in usual], [steps[k] for k in usual], rules)
     return turning
 
 
-def _way(points: FloatArray) -> ComplexArray:
-    """Return the points as complex numbers from the first of them."""
-    return np.ascontiguousarray(points - points[0]).view(np.complex128)[:, 0]
+def _way(points: FloatArray, pixel: float) -> ComplexArray:
+    """Return the way round a polygon, from its first vertex to that again, as complex numbers in pixels."""
+    place = np.ascontiguousarray(points).view(np.complex128)[:, 0]
+    way = np.zeros(len(place) + 1, dtype=np.complex128)
+    np.subtract(place, place[0], out=way[:-1])
+    return np.divide(way, pixel, out=way)
 
 
-def _lengths(steps: ComplexArray) -> FloatArray:
-    """Return the absolute values, in a third of the time of those that never overflow."""
-    return np.asarray(np.sqrt(steps.real**2 + steps.imag**2))
-
-
-def _turns(ways: list[ComplexArray], rules: CornerRules) -> BoolArray:
+def _turns(ways: list[ComplexArray], steps: list[FloatArray], rules: CornerRules) -> BoolArray:
     """Return whether the lines behind and ahead of any sample of a loop differ in direction by a corner."""
     near, far = round(rules.gap / _WIDE), round((rules.gap + rules.window) / _WIDE)
-    samples, counts = _resampled(ways, far)
-    starts = np.cumsum(counts + far) - (counts + far)
-    number = np.arange(len(samples)) - np.repeat(starts, counts + far)
-    ahead = _slopes(samples, number.astype(np.float64), near, far)
-    loop = np.repeat(np.arange(len(counts)), counts)
-    here = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    behind = ahead[starts[loop] + (here - near - far) % counts[loop]]
-    between = behind.conj() * ahead[starts[loop] + here]
-    sharp = between.real <= np.cos(np.radians(rules.turn - _LESS)) * _lengths(between)
-    return np.bincount(loop[sharp], minlength=len(counts)) > 0
+    apart = near + far  # the side behind a sample is the side ahead of the one so much earlier
+    samples, counts = _resampled(ways, steps, apart, far)
+    sides = _slopes(np.concatenate(samples), near, far)
+    between = sides[:-apart].conj() * sides[apart:]
+    sharp = between.real <= np.cos(np.radians(rules.turn - _LESS)) * np.abs(between)
+    first = np.cumsum([0, *(len(own) for own in samples[:-1])])
+    return np.array([sharp[a : a + count].any() for a, count in zip(first, counts, strict=True)])
 
 
-def _resampled(ways: list[ComplexArray], more: int) -> tuple[ComplexArray, IntArray]:
-    """Return samples evenly around each closed polygon, `more` of them once again, and how many there are."""
-    closed = np.concatenate([part for way in ways for part in (way, way[:1])])
-    sizes = np.array([len(way) + 1 for way in ways])
-    first = np.cumsum(sizes) - sizes
-    steps = _lengths(np.diff(closed))
-    steps[first[1:] - 1] = 1.0  # from one polygon to the next
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    lengths = along[first + sizes - 1] - along[first]
-    counts = np.rint(lengths / _WIDE).astype(np.int64)
-    wanted = [
-        start + length / count * (np.arange(count + more) % count)
-        for start, length, count in zip(along[first], lengths, counts, strict=True)
-    ]
-    return np.interp(np.concatenate(wanted), along, closed), counts
+def _resampled(
+    ways: list[ComplexArray], steps: list[FloatArray], before: int, after: int
+) -> tuple[list[ComplexArray], list[int]]:
+    """Return samples evenly around each polygon, some at either end once again, and how many there are."""
+    found, counts = [], []
+    for way, step in zip(ways, steps, strict=True):
+        along = np.concatenate([[0.0], np.cumsum(step)])
+        count = round(float(along[-1]) / _WIDE)
+        own = np.interp(np.arange(count) * (along[-1] / count), along, way)
+        found.append(np.concatenate([own[-before:], own, own[:after]]))
+        counts.append(count)
+    return found, counts
 
 
-def _slopes(samples: ComplexArray, number: FloatArray, near: int, far: int) -> ComplexArray:
+def _slopes(samples: ComplexArray, near: int, far: int) -> ComplexArray:
     """Return the slope, times a constant, of the line fitted to the samples `near` … `far` after each."""
+    number = np.arange(len(samples), dtype=np.float64)
     total = np.concatenate([[0.0], np.cumsum(samples)])
     moment = np.concatenate([[0.0], np.cumsum(number * samples)])
     window = slice(near, len(samples) - far + near), slice(far + 1, None)
