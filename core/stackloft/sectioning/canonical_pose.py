@@ -18,9 +18,9 @@ from itertools import groupby
 import numpy as np
 
 from stackloft.geometry.odd_moments import Powers, central_moment_ratios
-from stackloft.model.arrays import FloatArray, frozen_floats
+from stackloft.model.arrays import FloatArray, frozen_floats, read_only
 from stackloft.model.contour_stack import ContourStack, Loop
-from stackloft.sectioning.loop_curves import mirror_ready
+from stackloft.sectioning.loop_curves import flipped_points, mirror_ready
 
 POWERS: tuple[Powers, ...] = (
     (3, 0, 0), (1, 2, 0),
@@ -71,18 +71,18 @@ def flipped_stack(contours: ContourStack, flip: tuple[float, float]) -> ContourS
     """
     if flip == (1.0, 1.0):
         return contours
-    scale = np.array(flip)
     sections = tuple(
-        replace(
-            section,
-            loops=tuple(Loop(frozen_floats(p.points * scale), p.corners, p.hole) for p in section.loops),
-        )
+        replace(section, loops=tuple(_flipped(loop, flip) for loop in section.loops))
         for section in contours.sections
     )
     affine = frozen_floats(contours.affine * [*flip, 1.0, 1.0])
     mirrored = replace(contours, sections=sections, affine=affine)
     mirror_ready(contours, mirrored, flip)
     return mirrored
+
+
+def _flipped(loop: Loop, flip: tuple[float, float]) -> Loop:
+    return Loop(read_only(flipped_points(loop.points, flip)), loop.corners, loop.hole)
 
 
 def _odd(powers: Powers) -> tuple[int, int, int]:
