@@ -55,9 +55,9 @@ class _PlainFrames:
 
     def _frame(self, header: PlainHeader, path: Path) -> Frame | None:
         alike = {keyword: value for keyword, value in header.values.items() if keyword not in _OWN}
-        common = (alike, header.pixels_at, header.pixels_length)
+        common = (alike, header.pixels_length)
         if self._last is not None and self._last[0] == common:
-            return _moved(self._last[1], Lookup(header, ()), path)
+            return _moved(self._last[1], header, path)
         frames = frames_of(header, path)
         if len(frames) != 1:
             return None
@@ -66,8 +66,9 @@ class _PlainFrames:
         return frame
 
 
-def _moved(frame: Frame, lookup: Lookup, path: Path) -> Frame | None:
+def _moved(frame: Frame, header: PlainHeader, path: Path) -> Frame | None:
     """Return the frame of a file that differs from that of `frame` by `_OWN` alone; None without a place."""
+    lookup, samples = Lookup(header, ()), frame.samples_at
     position = lookup.floats("PlanePositionSequence", "ImagePositionPatient", 3)
     if position is None:
         return None
@@ -78,4 +79,5 @@ def _moved(frame: Frame, lookup: Lookup, path: Path) -> Frame | None:
         order=(*order_of(lookup), 0),
         position=frozen_floats(position),
         location=location_of(lookup),
+        samples_at=None if samples is None else replace(samples, at=header.pixels_at),
     )
