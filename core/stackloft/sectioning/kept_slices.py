@@ -24,6 +24,9 @@ from stackloft.model.slice_stack import Picture
 
 BUDGET = 240_000_000
 """Bytes that are kept at most."""
+PIECE = 1 << 24
+ALIGNED = 64
+"""Bytes: memory that is taken at once, and what copies begin at multiples of."""
 STRIDE = 4
 """Of the pixels kept away from bodies."""
 Window = tuple[slice, slice]
@@ -49,11 +52,25 @@ class _Kept:
         return wide
 
 
-def _copied(picture: Picture) -> Picture:
-    """Return a read-only copy, so that the rest of the picture need not stay in memory."""
-    copy = np.array(picture)
-    copy.setflags(write=False)
-    return copy
+class _Shelf:
+    """Copies of pictures in memory that is taken in large pieces, which the system hands out sooner.
+
+    A scan's kept slices are mostly given up together, so that no piece outlives its other slices for long.
+    """
+
+    def __init__(self) -> None:
+        self._free = np.zeros(0, np.uint8)
+
+    def copied(self, picture: Picture) -> Picture:
+        """Return a read-only copy, so that the rest of the picture need not stay in memory."""
+        taken = -(-picture.nbytes // ALIGNED) * ALIGNED
+        if taken > len(self._free):
+            self._free = np.empty(max(PIECE, taken), np.uint8)
+        copy = self._free[: picture.nbytes].view(picture.dtype).reshape(picture.shape)
+        copy[...] = picture
+        copy.setflags(write=False)
+        self._free = self._free[taken:]
+        return copy
 
 
 def _widened(coarse: Picture) -> Picture:
@@ -82,6 +99,7 @@ class KeptSlices:
     def __init__(self, decode: Callable[[int], Picture], budget: int = BUDGET) -> None:
         self._decode = decode
         self._budget = budget
+        self._shelf = _Shelf()
         self._kept: dict[int, _Kept] = {}
 
     def keep(self, number: int, picture: Picture, window: Window) -> None:
@@ -92,7 +110,8 @@ class KeptSlices:
         if taken > self._budget:
             return
         self._budget -= taken
-        self._kept[number] = _Kept(_copied(inside), window, _copied(coarse), picture.shape)
+        copied = self._shelf.copied
+        self._kept[number] = _Kept(copied(inside), window, copied(coarse), picture.shape)
 
     def part(self, number: int) -> tuple[Picture, Window]:
         """Return what is kept as it was decoded, and its rows and columns; of a slice not kept, all of it."""
