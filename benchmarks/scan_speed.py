@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command `stackloft` has it; for all contestants
 
 SIDE = 512
 METHODS = "loft,cavalieri,partial-volume"
