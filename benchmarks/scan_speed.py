@@ -20,9 +20,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command `stackloft` has it; for all contestants
+
+import numpy as np
 
 SIDE = 512
 METHODS = "loft,cavalieri,partial-volume"
