@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 _ROUNDS = 12
+_SETTLED = 1e-12
 _FAR = 3.0  # standard deviations
 
 
@@ -53,13 +54,20 @@ def fit_circle(points: FloatArray) -> Circle:
         far = np.linalg.norm(apart, axis=1)
         off = far - radius
         spread = 1.4826 * float(np.median(np.abs(off)))
-        kept = np.abs(off) <= max(_FAR * spread, 1e-9 * radius)  # half of them at least
+        before, kept = kept, np.abs(off) <= max(_FAR * spread, 1e-9 * radius)  # half of them at least
         normals = apart[kept] / far[kept, None]
-        step = np.linalg.lstsq(np.column_stack([normals, np.ones(kept.sum())]), off[kept], rcond=None)[0]
+        step = _least_squares(np.column_stack([normals, np.ones(len(normals))]), off[kept])
         centre, radius = centre + step[:2], radius + float(step[2])
+        if np.abs(step).max() < _SETTLED * radius and np.array_equal(before, kept):
+            break
     apart = points[kept] - centre
     angle = np.arctan2(apart[:, 1], apart[:, 0])
     waves = np.column_stack([np.ones(len(angle)), np.cos(2 * angle), np.sin(2 * angle)])
-    _, cosine, sine = np.linalg.lstsq(waves, np.linalg.norm(apart, axis=1), rcond=None)[0]
+    _, cosine, sine = _least_squares(waves, np.linalg.norm(apart, axis=1))
     oblique = 2 * float(np.hypot(cosine, sine)) / radius
     return Circle(float(centre[0]), float(centre[1]), radius, float(off[kept].std()), oblique)
+
+
+def _least_squares(terms: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the coefficients of terms that are as good as orthogonal, points lying all around."""
+    return np.asarray(np.linalg.solve(terms.T @ terms, np.einsum("ki,k->i", terms, values)))

@@ -14,7 +14,21 @@ from stackloft.geometry.flat_view import taken
 from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.notices import Notice
+from stackloft.model.reused_memory import empty
 from stackloft.model.slice_stack import Picture, SliceStack
+
+
+def above(values: NDArray[Any], level: float) -> BoolArray:
+    """Return where grey levels, whole numbers or not, lie above a level.
+
+    Examples
+    --------
+    >>> above(np.array([[2, 3]], dtype=np.int16), 2.5).tolist()
+    [[False, True]]
+    """
+    whole = values.dtype.kind in "iu" and math.isfinite(level)  # else they would all become floats
+    inside = empty(values.shape, np.bool_)
+    return np.asarray(np.greater(values, math.floor(level) if whole else level, out=inside))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +50,8 @@ class SectionField:
     """(k, 2) column, row in the slice: the body's border pixels in order around it, from the leftmost of its
     first row, where somebody has found that the body is one piece without a hole and nowhere held together by
     corners alone. None: not known."""
+    unit: float = 1.0
+    """Grey levels of the picture's own that one of `values` is: whole numbers may count parts of them."""
     noise: NoiseFloor | None = None
     """What noise still adds to empty pixels of `values`, far below the level; None: nothing."""
 
@@ -49,8 +65,7 @@ class SectionField:
         """
         if self.local_levels is not None:
             return np.asarray(self.values > self.local_levels)
-        whole = self.values.dtype.kind in "iu" and math.isfinite(self.level)
-        return np.asarray(self.values > (math.floor(self.level) if whole else self.level))
+        return above(self.values, self.level)
 
     def relative(self) -> FloatArray:
         """Return the field above its level, float64: zero on the boundary."""
@@ -110,7 +125,9 @@ class Segmentation:
     stack: SliceStack
     field_of: Callable[[int, Picture], SectionField]
     """(slice number, decoded picture) to the slice's field; safe to call from several threads. One with a
-    true attribute `pointwise` looks at every pixel alone: of a part of a picture it makes that part of it."""
+    true attribute `pointwise` looks at every pixel alone: of a part of a picture it makes that part of it.
+    One with an attribute `begun`, of the same arguments, does all there that it needs the picture for, and
+    gives what is to be called for the field when the picture has been let go."""
     binary: bool = False
     """True for label maps: no grey levels, so contours are stair-stepped and say so."""
     notices: tuple[Notice, ...] = ()
@@ -150,7 +167,13 @@ class Segmentation:
         if self.knows_its_pictures:
             return self.field_of(index, np.zeros((0, 0), np.uint8))
         decode = self.stack.luminance if self.luminance_alone else self.stack.decode
-        return self.field_of(index, decode(index))
+        begun = getattr(self.field_of, "begun", None)
+        if begun is None:
+            return self.field_of(index, decode(index))
+        rest: Callable[[], SectionField] = begun(
+            index, decode(index)
+        )  # here nobody holds the picture any more
+        return rest()
 
     def field_beside(self, index: int, picture: Picture) -> SectionField:
         """Return the same field, to the bit, where the slice's whole `picture` has been decoded anyway."""

@@ -57,7 +57,7 @@ def _answerable(loaded: Loaded, product: Any) -> Any:
     if isinstance(product, SliceStack) and not _answered(product.decode):
         return replace(product, decode=_Answerable(loaded, product.decode, product.shape))
     if isinstance(product, Segmentation) and not _answered(product.field_of):
-        field_of = partial(_field_found, loaded, product.field_of)
+        field_of = _AnswerableField(loaded, product.field_of)
         read = loaded.listing.family == "reader"  # a segmenter does not answer for a stack from memory
         stack = _answerable(loaded, product.stack) if read else product.stack
         return replace(product, stack=stack, field_of=field_of)
@@ -65,7 +65,7 @@ def _answerable(loaded: Loaded, product: Any) -> Any:
 
 
 def _answered(call: Callable[..., Any]) -> bool:
-    return isinstance(call, _Answerable) or (isinstance(call, partial) and call.func is _field_found)
+    return isinstance(call, _Answerable | _AnswerableField)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +94,30 @@ class _Answerable:
         return picture
 
 
-def _field_found(loaded: Loaded, field_of: Callable[..., Any], index: int, picture: Any) -> Any:
-    found = blaming(loaded, field_of, index, picture, doing="segment")
-    if not isinstance(found, SectionField):
-        raise failure(loaded, TypeError(f"the field of slice {index + 1} came as {type(found).__name__}"))
-    return found
+@dataclass(frozen=True, slots=True)
+class _AnswerableField:
+    """A `field_of` whose failures are its plug-in's."""
+
+    loaded: Loaded
+    field_of: Callable[[int, Any], Any]
+
+    def __call__(self, index: int, picture: Any) -> SectionField:
+        return self._checked(index, blaming(self.loaded, self.field_of, index, picture, doing="segment"))
+
+    @property
+    def begun(self) -> Callable[[int, Any], Callable[[], SectionField]] | None:
+        """The same in two steps, answered for as well."""
+        own = getattr(self.field_of, "begun", None)
+        return None if own is None else partial(self._begun, own)
+
+    def _begun(
+        self, begin: Callable[[int, Any], Any], index: int, picture: Any
+    ) -> Callable[[], SectionField]:
+        rest = blaming(self.loaded, begin, index, picture, doing="segment")
+        return lambda: self._checked(index, blaming(self.loaded, rest, doing="segment"))
+
+    def _checked(self, index: int, found: Any) -> SectionField:
+        if isinstance(found, SectionField):
+            return found
+        wrong = TypeError(f"the field of slice {index + 1} came as {type(found).__name__}")
+        raise failure(self.loaded, wrong)

@@ -104,6 +104,7 @@ def decode_once(
         for index, picture, section in decoded_ahead(segmentation, pictures=looked_at):
             for sink in (*own, *others):
                 sink.add(index, picture, section)
+            del picture, section  # or they would stay until the next ones come
             if all(mine.error for mine in own):
                 return ()
             progress.advance()

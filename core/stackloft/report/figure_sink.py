@@ -93,7 +93,7 @@ class FigureSink:
                 self._kept = self._figure(index, picture, section_field)
             return
         row, column = self._stack.pixel_spacing[index]
-        size = float(np.count_nonzero(_inside(section_field)) * row * column)
+        size = float(np.count_nonzero(section_field.above()) * row * column)
         if size > self._most:
             self._most, self._kept = size, self._figure(index, picture, section_field)
 
@@ -121,7 +121,7 @@ class FigureSink:
             picture=seen,
             colour=bool((np.ptp(seen.astype(np.int16), axis=2) > 3).any()),
             grey=_panel(((grey - low) * stretch).astype(np.uint8), section, window, size, None),
-            binary=_panel(255 * _inside(section).astype(np.uint8), section, window, size, 0),
+            binary=_panel(255 * section.above().astype(np.uint8), section, window, size, 0),
             histogram=np.histogram(grey, BINS, (low, high))[0].astype(np.int64),
             levels=(low, high),
             threshold=_own_level(section),
@@ -134,24 +134,18 @@ class FigureSink:
         )
 
 
-def _inside(section: SectionField) -> NDArray[np.bool_]:
-    level = section.level if section.local_levels is None else section.local_levels
-    inside: NDArray[np.bool_] = section.values > level
-    return inside
-
-
 def _turned(section: SectionField) -> bool:
     """Whether the field is the picture's grey turned over, as of a dark body."""
-    return bool(np.isclose(section.threshold, -section.level) and section.level < 0.0)
+    return bool(np.isclose(section.threshold, -section.level * section.unit) and section.level < 0.0)
 
 
 def _own_grey(section: SectionField) -> NDArray[Any]:
     """Return the field on the picture's own grey scale."""
-    return -section.values if _turned(section) else section.values
+    return section.values * np.float32(-section.unit if _turned(section) else section.unit)
 
 
 def _own_level(section: SectionField) -> float:
-    return -section.level if _turned(section) else section.level
+    return section.level * (-section.unit if _turned(section) else section.unit)
 
 
 def _panel(

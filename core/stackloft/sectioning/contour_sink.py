@@ -11,6 +11,7 @@ import numpy as np
 from stackloft.contracts.sink import Sink
 from stackloft.model.contour_stack import ContourStack, Section
 from stackloft.model.notices import Notice
+from stackloft.model.reused_memory import memory_reused
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.ahead import THREADS, Behind, ahead_on, worked_ahead
@@ -169,6 +170,7 @@ def feed(segmentation: Segmentation, sinks: Sequence[Sink]) -> list[Any]:
     for index, picture, section in decoded_ahead(segmentation):
         for sink in sinks:
             sink.add(index, picture, section)
+        del picture, section  # or they would stay until the next ones come
     return [sink.end() for sink in sinks]
 
 
@@ -188,7 +190,7 @@ def decoded_ahead(
         picture = segmentation.stack.decode(index)
         return index, picture, segmentation.field_beside(index, picture)
 
-    with without_opencv_threads():
+    with without_opencv_threads(), memory_reused():
         yield from worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
 
 

@@ -15,6 +15,7 @@ from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.segmentation import SectionField
 from stackloft.sectioning.border_chains import chain_lines, line_around, near_border
+from stackloft.sectioning.large_masks import one_at_a_time
 from stackloft.sectioning.marching_squares import Crossings, closed_lines
 from stackloft.sectioning.nesting import inside_polygon
 from stackloft.sectioning.sub_pixel import REACH
@@ -122,7 +123,8 @@ def _quick_grid(section: SectionField) -> Grid | None:
         return None
     chain = None if section.outline is None else section.outline - np.array(section.offset[::-1], np.int32)
     if chain is None or near_border(chain, section.values.shape, REACH):
-        lines = chain_lines(section.above().view(np.uint8), REACH)
+        with one_at_a_time(section.values.size):
+            lines = chain_lines(section.above().view(np.uint8), REACH)
     else:
         lines = [line_around(chain)]
     if lines is None:

@@ -171,15 +171,14 @@ def _ramp(value: FloatArray, low: float, high: float) -> FloatArray:
     return np.clip((value - low) / (high - low), 0.0, 1.0)
 
 
-_ALONG_AND_ACROSS = np.array([[-3, -3, -3, -1, -1, -1, 1, 1, 1, 3, 3, 3], 4 * [-1, 0, 1]], dtype=np.float64)
-"""Weights of the least-squares plane through 4 × 3 pixels: 30 times its slope along, 8 times that across."""
-
-
 def _runs_across(around: FloatArray) -> NDArray[np.bool_]:
     """Return whether the field changes faster along the crossed edge than across it.
 
     Slopes of the plane fitted to the 4 × 3 pixels around the edge by least squares; in whole numbers, so that
     where both are alike in whole grey levels no rounding decides.
     """
-    along, across = np.abs(_ALONG_AND_ACROSS @ around)
+    cells = around.reshape(4, 3, -1)
+    rows, columns = cells.sum(axis=1), cells.sum(axis=0)
+    along = np.abs(3.0 * (rows[3] - rows[0]) + (rows[2] - rows[1]))  # 30 times the plane's slope
+    across = np.abs(columns[2] - columns[0])  # 8 times
     return np.asarray(8 * along >= 30 * _DOMINANCE * across)

@@ -29,7 +29,14 @@ from stackloft.model.notices import Notice
 from stackloft.model.reference import Reference
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.readers.reference_find import grey_window, object_found, resizable
-from stackloft_plugins.readers.reference_shapes import LEVELS, Shape, contrast_with_plate, is_round, shapes_at
+from stackloft_plugins.readers.reference_shapes import (
+    LEVELS,
+    Shape,
+    contrast_with_plate,
+    greatest,
+    is_round,
+    shapes_at,
+)
 from stackloft_plugins.readers.reference_sighting import Found
 from stackloft_plugins.readers.reference_size import disc_at
 
@@ -116,10 +123,11 @@ def find_marks(picture: NDArray[Any], diameter: float) -> tuple[Found, ...]:
     size = (round(columns / step), round(rows / step))
     small = cv2.resize(resizable(picture), size, interpolation=cv2.INTER_AREA) if step > 1 else picture
     contrast = contrast_with_plate(small)
+    most = greatest(contrast)
     found: list[Found] = []
     least = 0.4 * np.pi / 4 * (diameter / step) ** 2
-    for level in LEVELS:
-        shapes = shapes_at(contrast, level, least)
+    for part in LEVELS:
+        shapes = shapes_at(contrast, part * most, least)
         for shape in shapes:
             measured = _measured(picture, shape, step, diameter)
             if measured is not None and not _known(measured, found, diameter):

@@ -16,7 +16,7 @@ from PIL import Image, UnidentifiedImageError
 
 from stackloft.model.errors import InputError
 from stackloft_plugins.readers.picture_kinds import READABLE
-from stackloft_plugins.readers.picture_pixels import pixels_of
+from stackloft_plugins.readers.picture_pixels import loaded_pixels
 from stackloft_plugins.readers.picture_tags import PictureTags, read_tags
 
 MAX_PIXELS = 500_000_000
@@ -148,8 +148,7 @@ def _decoded(
         try:
             if prepare is not None:
                 prepare(image)  # does something to JPEG alone
-            image.load()
-            pixels = pixels_of(image, paper)
+            pixels = loaded_pixels(image, paper)
         except _DAMAGE as error:
             raise _damaged(header.path, error) from error
     return np.ascontiguousarray(_UPRIGHT[header.orientation](pixels)) if header.orientation != 1 else pixels

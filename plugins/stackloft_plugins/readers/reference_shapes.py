@@ -68,15 +68,24 @@ def contrast_with_plate(picture: NDArray[Any]) -> NDArray[np.float32]:
     width = max(1, round(0.02 * min(colours.shape[:2])))
     edges = (colours[:width], colours[-width:], colours[:, :width], colours[:, -width:])
     plate = np.median(np.concatenate([edge.reshape(-1, colours.shape[2]) for edge in edges]), axis=0)
-    return np.asarray(np.sqrt(((colours - plate) ** 2).mean(axis=2)), dtype=np.float32)
+    total = np.zeros(colours.shape[:2], np.float32)
+    for k in range(colours.shape[2]):  # plane by plane: a tenth of the time
+        off = np.subtract(cv2.extractChannel(colours, k), plate[k], dtype=np.float32)
+        total += np.square(off, out=off)
+    return np.asarray(np.sqrt(total / np.float32(colours.shape[2])), dtype=np.float32)
 
 
-def shapes_at(contrast: NDArray[np.float32], part: float, least: float | None = None) -> list[Shape]:
-    """Return the objects that stand out by more than `part` of the greatest contrast.
+def greatest(contrast: NDArray[np.float32]) -> float:
+    """Return the contrast that little of the picture exceeds."""
+    return float(np.percentile(contrast, 99.5))
+
+
+def shapes_at(contrast: NDArray[np.float32], level: float, least: float | None = None) -> list[Shape]:
+    """Return the objects that stand out by more than a contrast, and by more than plates scatter.
 
     Smaller ones than `least` pixels are left out; None: than a part of the picture.
     """
-    level = max(_FAINTEST, part * float(np.percentile(contrast, 99.5)))
+    level = max(_FAINTEST, level)
     rows, columns = contrast.shape
     mask = (contrast > level).astype(np.uint8)
     outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)

@@ -80,17 +80,18 @@ def edge_points(grey: NDArray[np.float32], starts: FloatArray, normals: FloatArr
     Lines that leave the picture, or whose level is not crossed within 2 pixels, give no point.
     """
     t = np.arange(-_REACH, _REACH + _STEP / 2, _STEP)
-    at = (starts[:, None, :] + t[None, :, None] * normals[:, None, :]).astype(np.float32)
+    x, y = ((starts[:, k, None] + t * normals[:, k, None]).astype(np.float32) for k in (0, 1))
     rows, columns = grey.shape
-    whole = ((at >= 0) & (at <= [columns - 1, rows - 1])).all(axis=(1, 2))
-    seen = cv2.remap(grey, at[whole, :, 0], at[whole, :, 1], cv2.INTER_LINEAR).astype(np.float64)
+    inside = (x >= 0) & (x <= columns - 1) & (y >= 0) & (y <= rows - 1)
+    whole = inside.all(axis=1)
+    seen = cv2.remap(grey, x[whole], y[whole], cv2.INTER_LINEAR).astype(np.float64)
     if not len(seen):
         return np.empty((0, 2))
-    inside, outside = ((t <= -_BAND[0]) & (t >= -_BAND[1])), ((t >= _BAND[0]) & (t <= _BAND[1]))
-    level = 0.5 * (np.median(seen[:, inside]) + np.median(seen[:, outside]))
+    inner, outer = (np.median(seen[:, (side >= _BAND[0]) & (side <= _BAND[1])]) for side in (-t, t))
+    level = 0.5 * (inner + outer)
     near = np.abs(t) <= 3.0
     values, places = seen[:, near] - level, t[near]
-    if np.median(seen[:, inside]) < level:
+    if inner < level:
         values = -values
     crossed = (values[:, :-1] > 0) & (values[:, 1:] <= 0)
     some = crossed.any(axis=1)

@@ -11,6 +11,7 @@ import numpy as np
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.reference import Reference
+from stackloft.model.reused_memory import memory_reused
 from stackloft_plugins.readers.picture_decode import PictureHeader, decode_picture, decode_smaller
 from stackloft_plugins.readers.picture_scale import Bench
 from stackloft_plugins.readers.reference_sighting import Found, Missing
@@ -48,7 +49,8 @@ def find_in_stack(
     InputError
         No picture shows it, or one cannot be decoded.
     """
-    from stackloft_plugins.readers.reference_find import find_reference  # noqa: PLC0415 - needs OpenCV
+    from stackloft.sectioning.opencv_threads import without_opencv_threads  # noqa: PLC0415 - needs OpenCV
+    from stackloft_plugins.readers.reference_find import find_reference  # noqa: PLC0415 - likewise
 
     def look(header: PictureHeader) -> Found | Missing:
         small, factor = decode_smaller(header, paper, LOOKED_AT)
@@ -59,7 +61,8 @@ def find_in_stack(
             return seen.enlarged(factor)
         return find_reference(decode_picture(header, paper), reference.kind)
 
-    with ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-reference") as pool:
+    pool = ThreadPoolExecutor(THREADS, thread_name_prefix="stackloft-reference")
+    with pool, without_opencv_threads(), memory_reused():
         seen = list(pool.map(look, headers))
     found = tuple(one if isinstance(one, Found) else None for one in seen)
     reasons = tuple(one.reason if isinstance(one, Missing) else "" for one in seen)

@@ -10,14 +10,17 @@ r"""Values known at some pixels, averaged in a Gaussian window about each pixel,
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.arrays import FloatArray, IntArray
-from stackloft_plugins.segmenters.grey import Grey
+from stackloft.model.arrays import BoolArray, FloatArray, IntArray
+from stackloft.model.reused_memory import empty
+from stackloft_plugins.segmenters.grey import Grey, Levels
 
 CELL = 4
 """Pixels: a cell's side; windows should have a standard deviation of at least one cell."""
@@ -35,23 +38,46 @@ class CellMeans:
     def at(self, where: IntArray) -> Grey:
         """Return the means at pixels by their number, row after row, (n)."""
         row, column = np.divmod(where, self.shape[1])
-        y, x = (((axis + 0.5) / CELL - 0.5).astype(np.float32) for axis in (row, column))
         seen = [
-            cv2.remap(self.cells, x[k : k + _MOST], y[k : k + _MOST], cv2.INTER_LINEAR, None, _EDGE)
-            for k in range(0, len(x), _MOST)
+            self.between(column[k : k + _MOST], row[k : k + _MOST]).ravel() for k in range(0, len(row), _MOST)
         ]
-        return np.concatenate([part.ravel() for part in seen]) if seen else np.zeros(0, np.float32)
+        return np.concatenate(seen) if seen else np.zeros(0, np.float32)
 
-    def everywhere(self) -> Grey:
-        """Return the means at all pixels, (rows, columns)."""
-        rows, columns = self.cells.shape
-        size = (columns * CELL, rows * CELL)
-        wide = cv2.resize(self.cells, size, interpolation=cv2.INTER_LINEAR)
-        return np.asarray(wide[: self.shape[0], : self.shape[1]], dtype=np.float32)
+    def between(self, x: NDArray[Any], y: NDArray[Any]) -> Grey:
+        """Return the means at columns x and rows y of fewer than 2**15 rows, anywhere between the pixels."""
+        across, down = (((axis + 0.5) / CELL - 0.5).astype(np.float32) for axis in (x, y))
+        seen = cv2.remap(self.cells, across, down, cv2.INTER_LINEAR, None, cv2.BORDER_REPLICATE)
+        return np.asarray(seen, np.float32)
+
+    def below(self, levels: Levels) -> BoolArray:
+        """Return where a picture's levels lie above the means, (rows, columns)."""
+        inside = empty(self.shape, np.bool_)
+        for some, means in self._strips():
+            np.greater(levels[some], means, out=inside[some])
+        return inside
+
+    def taken_off(self, levels: Levels) -> Levels:
+        """Return a picture's levels less the means, of the same type."""
+        less = empty(levels.shape, levels.dtype)
+        for some, means in self._strips():
+            off = levels[some] - means
+            less[some] = np.rint(off, out=off) if levels.dtype.kind in "iu" else off
+        return less
+
+    def _strips(self) -> Iterator[tuple[slice, Grey]]:
+        """Yield the means at all pixels, some rows at once, which stay in the processor's cache."""
+        rows, columns = self.shape
+        for top in range(0, rows, _STRIP):
+            some = slice(top, min(top + _STRIP, rows))
+            first = max(top // CELL - 1, 0)
+            cells = self.cells[first : (top + _STRIP) // CELL + 1]
+            size = (self.cells.shape[1] * CELL, len(cells) * CELL)
+            wide = cv2.resize(cells, size, interpolation=cv2.INTER_LINEAR)
+            yield some, np.asarray(wide[top - first * CELL :][: some.stop - top, :columns], np.float32)
 
 
 _MOST = 32_000  # OpenCV's remap takes fewer than 2**15 rows
-_EDGE = cv2.BORDER_REPLICATE
+_STRIP = 16 * CELL
 
 
 def cell_means(
@@ -74,8 +100,10 @@ def cell_means(
     Examples
     --------
     >>> found = cell_means((40, 80), np.array([820, 860]), np.array([1.0, 3.0]), 4.0, 1e-4)
-    >>> [round(float(mean), 1) for mean in found.at(np.array([820, 860]))], found.everywhere().shape
-    ([1.0, 3.0], (40, 80))
+    >>> [round(float(mean), 1) for mean in found.at(np.array([820, 860]))]
+    [1.0, 3.0]
+    >>> found.taken_off(np.full((40, 80), 3.0, np.float32))[10, [20, 60]].round(1) + 0.0
+    array([2., 0.], dtype=float32)
     """
     rows, columns = (-(-side // CELL) for side in shape)
     row, column = np.divmod(where, shape[1])

@@ -29,12 +29,14 @@ from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.alignment import HOW, laid_out
-from stackloft_plugins.segmenters.body_window import Mask, body_window, coarse_step, main_body
+from stackloft_plugins.segmenters.across_edge import across
+from stackloft_plugins.segmenters.body_outline import Outline, main_outline
+from stackloft_plugins.segmenters.body_window import body_window, coarse_step, main_body
 from stackloft_plugins.segmenters.edge_level import edge_level
 from stackloft_plugins.segmenters.flat_field import Light, fit_light
 from stackloft_plugins.segmenters.glare import glare_notice, without_glare
 from stackloft_plugins.segmenters.grey import Grey, median_filtered
-from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge, inside_band, outside_band
+from stackloft_plugins.segmenters.half_way import Edge, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import on_one_level
 from stackloft_plugins.segmenters.plate_shades import (
@@ -129,19 +131,19 @@ def colour_field(picture: Picture, threshold: float | None, name: str) -> Sectio
         raise _no_body(name, f"no colour differs from the plate's by {level:.3g}")
     colours = _scaled(picture[window], full)
     if light is not None:
-        colours /= light.at(np.arange(shape[0])[window[0]], np.arange(shape[1])[window[1]], np.float32)[
-            ..., None
-        ]
+        for some, own in light.strips(window):
+            colours[some] /= own[..., None]
     difference = difference_from_shades if blind else lab_difference
-    body = main_body((median_filtered(difference(colours, plate)) > level).astype(np.uint8))
+    body = main_outline(median_filtered(difference(colours, plate)), level)
     grey, half = _along(colours, body, plate if blind else None)
     if grey is not None:
         grey = _deep_within(grey, body)
     edge = None if grey is None else half_way_edge(grey, half)
     if grey is None or edge is None or _is_lost(grey, edge):
         raise _no_body(name, "no boundary between two colours")
-    settled = edge_level(grey, edge)
-    grey, edge = on_one_level(grey, edge, settled)
+    seen = across(grey, edge.outline, edge.level)
+    settled = edge_level(edge, seen)
+    grey, edge = on_one_level(grey, edge, settled, seen if settled == edge.level else None)
     notices: tuple[Notice, ...] = ()
     if float(plate.sum()) > float(np.median(colours[edge.mask > 0], axis=0).sum()):  # a light plate
         grey, share = without_glare(grey, settled, edge)
@@ -181,7 +183,9 @@ def _light(coarse: Grey, body: BoolArray, step: int, shape: tuple[int, int]) -> 
 def _is_lost(grey: Grey, edge: Edge) -> bool:
     """Tell whether the step is no more than noise, shadow and juice put aside."""
     step = edge.contrast
-    return step < _LEAST_STEP or (step < _NO_STEP * edge.noise and step < _NO_STEP * grain(grey, edge.mask))
+    return step < _LEAST_STEP or (
+        step < _NO_STEP * edge.noise and step < _NO_STEP * grain(grey, edge.outline.outer)
+    )
 
 
 def _scaled(part: Picture, full: float) -> Grey:
@@ -210,13 +214,13 @@ def _look(coarse: Grey) -> tuple[Grey, Grey, bool]:
     return plate, median_filtered(apart), False
 
 
-def _along(colours: Grey, mask: Mask, shades_of: Grey | None) -> tuple[Grey | None, float]:
+def _along(colours: Grey, body: Outline, shades_of: Grey | None) -> tuple[Grey | None, float]:
     """Return how far each pixel lies on the way from the plate beside the edge to the body, and half of it.
 
     Lengths of the way are those of RGB from 0 to 255. Reflections and crumbs may lie beyond either end.
     Given the plate's colour, only the way's part across its shades counts.
     """
-    inner, outer = inside_band(mask), outside_band(mask)
+    inner, outer = body.inner, body.outer
     if not len(inner) or not len(outer):
         return None, 0.0
     pixels = colours.reshape(-1, 3)
@@ -231,10 +235,10 @@ def _along(colours: Grey, mask: Mask, shades_of: Grey | None) -> tuple[Grey | No
     return median_filtered(grey), 127.5 * length
 
 
-def _deep_within(grey: Grey, body: Mask) -> Grey:
+def _deep_within(grey: Grey, body: Outline) -> Grey:
     """Return the grey levels with no pixel deep within the body below its edge's own."""
-    deep = cv2.erode(body, np.ones((2 * _DEEP + 1, 2 * _DEEP + 1), np.uint8)) > 0
-    return np.where(deep, np.maximum(grey, np.float32(np.median(grey.ravel()[inside_band(body)]))), grey)
+    deep = cv2.erode(body.mask(), np.ones((2 * _DEEP + 1, 2 * _DEEP + 1), np.uint8)) > 0
+    return np.where(deep, np.maximum(grey, np.float32(np.median(grey.ravel()[body.inner]))), grey)
 
 
 def _no_body(name: str, found: str) -> InputError:

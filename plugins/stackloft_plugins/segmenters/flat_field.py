@@ -8,6 +8,7 @@ needs nothing: the body's edge stands far above it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +20,9 @@ from stackloft.model.arrays import FloatArray, IntArray
 from stackloft_plugins.segmenters.body_window import Mask
 from stackloft_plugins.segmenters.grey import Grey
 
+Window = tuple[slice, slice]
+"""Rows and columns."""
+
 _KEEP_OFF = 4
 """Coarse pixels around the body that are not taken for plate."""
 _MOST = 6000
@@ -28,7 +32,7 @@ _OUTLIER = 2.5
 """Standard deviations; shadows, juice and reference objects lie further off."""
 _LEAST = 0.15
 """Share of the picture that must be plate for a fit."""
-_AT_ONCE = 64
+AT_ONCE = 64
 """Rows divided at once, few enough to stay in the processor's cache."""
 _STRONGEST = 0.6
 """The light may not fall below this fraction of its mean; a fit that says so is no light."""
@@ -43,17 +47,20 @@ class Light:
     shape: tuple[int, int]
     """(rows, columns) of the whole picture."""
 
-    def flattened(self, grey: NDArray[Any], window: tuple[slice, slice], sign: float = 1.0) -> Grey:
-        """Return `sign` times the grey levels of a window of the picture, as under even light."""
-        rows = np.arange(self.shape[0])[window[0]]
-        columns = np.arange(self.shape[1])[window[1]]
-        down, along = (factor.astype(np.float32) for factor in self._factors(rows, columns))
+    def flattened(self, grey: NDArray[Any], window: Window) -> Grey:
+        """Return the grey levels of a window of the picture, as under even light."""
         flat = np.empty(grey.shape, np.float32)
-        for top in range(0, len(rows), _AT_ONCE):
-            some = slice(top, top + _AT_ONCE)
-            light = down[some] @ along
-            cv2.divide(np.ascontiguousarray(grey[some]), light, flat[some], scale=sign, dtype=cv2.CV_32F)
+        for some, light in self.strips(window):
+            cv2.divide(np.ascontiguousarray(grey[some]), light, flat[some], dtype=cv2.CV_32F)
         return flat
+
+    def strips(self, window: Window) -> Iterator[tuple[slice, Grey]]:
+        """Yield the brightness in a window, `AT_ONCE` of its rows at once and the last ones perhaps fewer."""
+        rows, columns = (np.arange(side)[kept] for side, kept in zip(self.shape, window, strict=True))
+        factors = tuple(factor.astype(np.float32) for factor in self._factors(rows, columns))
+        for top in range(0, len(rows), AT_ONCE):
+            some = slice(top, min(top + AT_ONCE, len(rows)))
+            yield some, np.asarray(_product(factors[0][:, some], factors[1]), np.float32)
 
     def at(
         self,
@@ -63,18 +70,24 @@ class Light:
     ) -> NDArray[np.floating[Any]]:
         """Return the brightness at rows × columns."""
         down, along = self._factors(rows, columns)
-        return np.asarray(down.astype(dtype) @ along.astype(dtype))
+        return _product(down.astype(dtype), along.astype(dtype))
 
     def _factors(
         self, rows: FloatArray | IntArray, columns: FloatArray | IntArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return two thin matrices, (rows, 3) and (3, columns), whose product is the brightness."""
+        """Return what `_product` makes the brightness of: (2, rows) and (2, columns)."""
         y = 2.0 * rows / max(self.shape[0] - 1, 1) - 1.0
         x = 2.0 * columns / max(self.shape[1] - 1, 1) - 1.0
         c = self.coefficients
-        down = np.stack([c[0] + c[2] * y + c[5] * y * y, c[1] + c[4] * y, np.ones_like(y)], axis=1)
-        along = np.stack([np.ones_like(x), x, c[3] * x * x])
-        return down, along
+        return np.stack([c[0] + c[2] * y + c[5] * y * y, c[1] + c[4] * y]), np.stack([x, c[3] * x * x])
+
+
+def _product(down: NDArray[np.floating[Any]], along: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]]:
+    """Return down[0] + down[1] · along[0] + along[1]; BLAS would wake threads of its own."""
+    light = np.multiply(down[1][:, None], along[0])
+    light += down[0][:, None]
+    light += along[1]
+    return np.asarray(light)
 
 
 def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Light | None:
@@ -115,7 +128,7 @@ def fit_light(coarse: Grey, body: Mask, step: int, shape: tuple[int, int]) -> Li
     found = _robust_fit(terms, value)
     if found is None:
         return None
-    light = Light(found / (terms @ found).mean(), shape)
+    light = Light(found / np.einsum("ij,j->i", terms, found).mean(), shape)
     corners = light.at(np.linspace(0, shape[0] - 1, 9), np.linspace(0, shape[1] - 1, 9))
     return light if corners.min() > _STRONGEST and corners.max() < 1.0 / _STRONGEST else None
 
@@ -127,10 +140,11 @@ def _robust_fit(terms: FloatArray, value: FloatArray) -> FloatArray | None:
     for _ in range(_ROUNDS):
         used = terms[kept]  # normal equations: six terms within -1 to 1 are well conditioned
         try:
-            coefficients = np.asarray(np.linalg.solve(used.T @ used, used.T @ value[kept]), np.float64)
+            sums = np.einsum("ij,i->j", used, value[kept])  # BLAS wakes threads of its own for either product
+            coefficients = np.asarray(np.linalg.solve(used.T @ used, sums), np.float64)
         except np.linalg.LinAlgError:
             return None
-        off = np.abs(value - terms @ coefficients)
+        off = np.abs(value - np.einsum("ij,j->i", terms, coefficients))
         kept = off <= max(_OUTLIER * 1.4826 * float(np.median(off)), 1.0)
         if kept.mean() < 0.5:
             return None

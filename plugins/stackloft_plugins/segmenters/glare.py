@@ -19,8 +19,9 @@ import numpy as np
 
 from stackloft.model.arrays import IntArray
 from stackloft.model.notices import Notice
+from stackloft_plugins.segmenters.body_outline import Outline
 from stackloft_plugins.segmenters.body_window import Mask
-from stackloft_plugins.segmenters.grey import Grey
+from stackloft_plugins.segmenters.grey import Levels
 from stackloft_plugins.segmenters.half_way import Edge
 
 _DEEP = 2.2
@@ -41,7 +42,7 @@ _SOFT = 0.7
 """Pixels: standard deviation of the edge that is put across a mouth."""
 
 
-def without_glare(grey: Grey, level: float, edge: Edge) -> tuple[Grey, float]:
+def without_glare(grey: Levels, level: float, edge: Edge) -> tuple[Levels, float]:
     """Return the grey levels with the bays that reflections cut into the body filled, and their share of it.
 
     Parameters
@@ -63,25 +64,18 @@ def without_glare(grey: Grey, level: float, edge: Edge) -> tuple[Grey, float]:
     >>> int((filled > -150).sum()), int((grey > -150).sum()), round(share, 3)
     (1600, 1570, 0.019)
     """
-    step, mask = edge.contrast, edge.mask
-    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    if not outlines or step <= 0.0:
+    step, outline = edge.contrast, edge.outline
+    if not len(outline.chain) or step <= 0.0:
         return grey, 0.0
-    outline = max(outlines, key=len)[:, 0, :].astype(np.int64)
-    area = float(np.count_nonzero(mask))
-    bays = [bay for bay in _bays(outline) if _SMALLEST <= abs(_area(bay)) <= _LARGEST * area]
-    if not bays:
+    area = float(outline.area)
+    bays = [bay for bay in _bays(outline.chain.astype(np.int64)) if _of_a_lamp(bay, area)]
+    light = [bay for bay in bays if _is_lighter(grey, outline, bay, _LIGHTER * step)]
+    if not light:
         return grey, 0.0
-    light = np.zeros(mask.shape, np.uint8)
-    for bay in bays:
-        inside = np.zeros(mask.shape, np.uint8)
-        cv2.fillPoly(inside, [bay.astype(np.int32)], 1)
-        around = cv2.dilate(inside, np.ones((_BEFORE, _BEFORE), np.uint8))
-        own, before = grey[(inside > 0) & (mask == 0)], grey[(around > inside) & (mask == 0)]
-        if len(own) and len(before) and _lighter(own, before) >= _LIGHTER * step:
-            light |= inside
-    light[mask > 0] = 0
-    return _filled(grey, level, step, mask, light), float(np.count_nonzero(light)) / area
+    window = _around(np.concatenate(light), grey.shape)
+    filling = _filled_in(light, window)
+    filling[outline.part(window) > 0] = 0
+    return _filled(grey, level, step, outline, filling, window), float(np.count_nonzero(filling)) / area
 
 
 def glare_notice(share: float, name: str) -> tuple[Notice, ...]:
@@ -95,17 +89,51 @@ def glare_notice(share: float, name: str) -> tuple[Notice, ...]:
     return (Notice("glare-filled", message),)
 
 
-def _filled(grey: Grey, level: float, step: float, mask: Mask, bays: Mask) -> Grey:
-    """Return the grey levels with the body continued over the bays."""
+def _of_a_lamp(bay: IntArray, area: float) -> bool:
+    """Return whether a bay is neither too small nor too large beside a body of that many pixels."""
+    return _SMALLEST <= abs(_area(bay)) <= _LARGEST * area
+
+
+def _is_lighter(grey: Levels, outline: Outline, bay: IntArray, least: float) -> bool:
+    """Return whether a bay is lighter than the plate before its mouth."""
+    window = _around(bay, grey.shape)
+    inside, beside, part = _filled_in([bay], window), outline.part(window) == 0, grey[window]
+    around = cv2.dilate(inside, np.ones((_BEFORE, _BEFORE), np.uint8))
+    own, before = part[(inside > 0) & beside], part[(around > inside) & beside]
+    return bool(len(own) and len(before) and _lighter(own, before) >= least)
+
+
+def _around(points: IntArray, shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """Return rows and columns of the picture about some points (x, y)."""
+    low = np.maximum(points.min(axis=0) - _BEFORE, 0)
+    high = np.minimum(points.max(axis=0) + _BEFORE + 1, shape[1::-1])
+    return slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0]))
+
+
+def _filled_in(bays: list[IntArray], window: tuple[slice, slice]) -> Mask:
+    """Return 1 where bays are, in a window."""
+    rows, columns = window
+    inside = np.zeros((rows.stop - rows.start, columns.stop - columns.start), np.uint8)
+    for bay in bays:
+        cv2.fillPoly(inside, [(bay - [columns.start, rows.start]).astype(np.int32)], 1)
+    return inside
+
+
+def _filled(
+    grey: Levels, level: float, step: float, outline: Outline, bays: Mask, window: tuple[slice, slice]
+) -> Levels:
+    """Return the grey levels with the body continued over the bays, which lie in a window."""
     if not bays.any():
         return grey
-    body = cv2.GaussianBlur((mask | bays).astype(np.float32), (0, 0), _SOFT)
+    body = cv2.GaussianBlur((outline.part(window) | bays).astype(np.float32), (0, 0), _SOFT)
     put = np.asarray(level + (body - 0.5) * step, dtype=np.float32)
     near = cv2.dilate(bays, np.ones((3, 3), np.uint8)) > 0
-    return np.where(near, np.maximum(grey, put), grey)
+    filled = grey.copy()
+    np.copyto(filled[window], np.maximum(grey[window], put.astype(grey.dtype)), where=near)
+    return filled
 
 
-def _lighter(own: Grey, before: Grey) -> float:
+def _lighter(own: Levels, before: Levels) -> float:
     """Return by how much the lightest pixels of a bay are lighter than the plate before it."""
     return float(np.median(before) - np.percentile(own, 15))
 
@@ -116,13 +144,14 @@ def _bays(outline: IntArray) -> list[IntArray]:
     steps = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)
     along = np.concatenate([[0.0], np.cumsum(np.concatenate([steps, steps]))])
     twice = np.concatenate([outline, outline])
+    x, y = np.ascontiguousarray(twice.T)
     widest = max(_WIDEST[0] * along[n], _WIDEST[1])
     sense = np.sign(_area(outline))
     found: list[tuple[float, int, int]] = []
     for lag in np.unique(np.round(np.geomspace(6, max(7, min(4 * widest, n // 3)), 24)).astype(int)):
-        mouth = np.linalg.norm(twice[lag : lag + n] - outline, axis=1)
+        mouth = (x[lag : lag + n] - x[:n]) ** 2 + (y[lag : lag + n] - y[:n]) ** 2  # squared
         way = along[lag : lag + n] - along[:n]
-        deep = (mouth <= widest) & (way >= _DEEP * np.maximum(mouth, 1.0))
+        deep = (mouth <= widest**2) & (way**2 >= _DEEP**2 * np.maximum(mouth, 1))
         found += [(_area(twice[k : k + lag + 1]), int(k), int(lag)) for k in np.flatnonzero(deep)]
     taken = np.zeros(n, dtype=bool)
     bays = []

@@ -11,6 +11,14 @@ from numpy.typing import NDArray
 Grey = NDArray[np.float32]
 """(rows, columns) grey levels on the picture's own scale."""
 
+Levels = NDArray[Any]
+"""(rows, columns) float32 grey levels, or int16 parts of them: see `FINE`."""
+
+FINE = 64
+"""Parts of a grey level in which the levels of 8-bit pictures are kept, as whole numbers: half the memory of
+float32. Under even light they are no whole levels any more; 255 of them, in the darkest light that is
+believed, make 27 200 parts."""
+
 CHANNELS: dict[str, tuple[float, float, float]] = {
     "luminance": (0.299, 0.587, 0.114),
     "red": (1.0, 0.0, 0.0),

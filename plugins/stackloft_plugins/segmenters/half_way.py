@@ -21,22 +21,18 @@ VDI/VDE 2630-1.2 "ISO 50 %".)
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import cv2
 import numpy as np
-from cv2.typing import MatLike
 
 from stackloft.model.arrays import IntArray
-from stackloft_plugins.segmenters.body_window import Mask, main_body
-from stackloft_plugins.segmenters.grey import Grey
+from stackloft_plugins.segmenters.body_outline import Outline, main_outline
+from stackloft_plugins.segmenters.body_window import Mask
+from stackloft_plugins.segmenters.grey import Grey, Levels
 
-_NEAR, _FAR = 1, 2  # pixels: the bands lie between these distances from the boundary
 _ROUNDS = 8
 _NEARBY = 15  # pixels
-_AT_ONCE = 256  # rows
 _SETTLED = 0.001  # of the contrast
 _STEEPEST = 0.9
 _GIVEN_BACK, _NEAR_BY = 0.4, 0.05
@@ -57,8 +53,12 @@ class Edge:
     """Standard deviation in the outer band, robust."""
     span: float
     """From the 5th to the 95th hundredth of the outer band."""
-    mask: Mask
-    """1 inside the body's outline."""
+    outline: Outline
+
+    @property
+    def mask(self) -> Mask:
+        """1 inside the body's outline."""
+        return self.outline.mask()
 
     @property
     def level(self) -> float:
@@ -71,7 +71,7 @@ class Edge:
         return self.body - self.background
 
 
-def half_way_edge(grey: Grey, level: float) -> Edge | None:
+def half_way_edge(grey: Levels, level: float) -> Edge | None:
     """Return the edge of the largest object, its level settled half-way (secant iteration).
 
     On a blurred edge the bands move along with the level they are to set, so that plain repetition would
@@ -101,13 +101,13 @@ def half_way_edge(grey: Grey, level: float) -> Edge | None:
         return None
     last, last_off = level, edge.level - level
     slope = _GIVEN_BACK if abs(last_off) < _NEAR_BY * abs(edge.contrast) else 0.0
-    area = int(np.count_nonzero(edge.mask))
+    area = edge.outline.area
     for _ in range(_ROUNDS):
         if abs(last_off) <= _SETTLED * abs(edge.contrast):
             break
         level = last + last_off / (1.0 - slope)
         nearer = edge_at(grey, level)
-        if nearer is None or not area <= _SAME_BODY * np.count_nonzero(nearer.mask) <= _SAME_BODY**2 * area:
+        if nearer is None or not area <= _SAME_BODY * nearer.outline.area <= _SAME_BODY**2 * area:
             break
         edge = nearer
         off = edge.level - level
@@ -116,22 +116,20 @@ def half_way_edge(grey: Grey, level: float) -> Edge | None:
     return edge
 
 
-def edge_at(grey: Grey, level: float) -> Edge | None:
+def edge_at(grey: Levels, level: float) -> Edge | None:
     """Return what lies on either side of the boundary of the largest object above `level`."""
-    mask = main_body((grey > level).view(np.uint8))
-    levels = grey.ravel()
-    within, beyond = levels[inside_band(mask)], levels[outside_band(mask)]
+    outline = main_outline(grey, level)
+    within, beyond = (grey.ravel()[band].astype(np.float32) for band in (outline.inner, outline.outer))
     if not len(within) or not len(beyond):
         return None
     background = _middle_mean(beyond)
     spread = 1.4826 * float(np.median(np.abs(beyond - background)))
     low, high = np.percentile(beyond, (5, 95))
-    return Edge(_middle_mean(within), background, spread, float(high - low), mask)
+    return Edge(_middle_mean(within), background, spread, float(high - low), outline)
 
 
-def grain(grey: Grey, mask: Mask) -> float:
+def grain(grey: Levels, band: IntArray) -> float:
     """Return the outer band's noise without what changes slowly: shadow and juice beside the body."""
-    band = outside_band(mask)
     values = grey.ravel()[band]
     weight, levels = np.zeros((2, *grey.shape), np.float32)
     weight.ravel()[band], levels.ravel()[band] = 1.0, values
@@ -144,40 +142,3 @@ def _middle_mean(values: Grey) -> float:
     quarter = len(values) // 4
     ordered = np.sort(values)
     return float(ordered[quarter : len(values) - quarter].mean(dtype=np.float64))
-
-
-def inside_band(mask: Mask) -> IntArray:
-    """Return the pixels 1 to 2 px inside, numbered row after row; of a small body its outermost ones."""
-    band = _between(mask, lambda part: (_eroded(part, _NEAR), _eroded(part, _FAR)))
-    return band if len(band) else _between(mask, lambda part: (part, _eroded(part, _FAR)))
-
-
-def outside_band(mask: Mask) -> IntArray:
-    """Return the pixels 1 to 2 px outside, numbered row after row."""
-    return _between(mask, lambda part: (cv2.dilate(part, _disc(_FAR)), cv2.dilate(part, _disc(_NEAR))))
-
-
-def _between(mask: Mask, outer_and_inner: Callable[[Mask], tuple[MatLike, MatLike]]) -> IntArray:
-    """Return where the outer of two masks is 1 and the inner, which lies within it, is not.
-
-    Some rows at once, and those beside them that matter, so that all stays in the processor's cache.
-    """
-    rows, columns = mask.shape
-    found = []
-    for top in range(0, rows, _AT_ONCE):
-        before = min(top, _FAR)
-        part = mask[top - before : top + _AT_ONCE + _FAR]
-        band = np.asarray(cv2.bitwise_xor(*outer_and_inner(part)), np.uint8).view(np.bool_)
-        found.append(np.flatnonzero(band[before : before + _AT_ONCE]) + top * columns)
-    return np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
-
-
-def _eroded(part: Mask, depth: int) -> MatLike:
-    return cv2.erode(part, _disc(depth), borderType=cv2.BORDER_CONSTANT, borderValue=1)
-
-
-@lru_cache
-def _disc(radius: int) -> Mask:
-    return np.asarray(
-        cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1)), np.uint8
-    )

@@ -7,8 +7,9 @@ and the background beside it; the textbook thresholds can be chosen instead.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,7 +27,7 @@ from stackloft_plugins.segmenters.grey import CHANNELS
 from stackloft_plugins.segmenters.histogram_levels import METHODS
 from stackloft_plugins.segmenters.slab_field import SlabRules, prepared, slab_segmentation
 from stackloft_plugins.segmenters.slab_level import SAMPLED
-from stackloft_plugins.segmenters.slice_field import LevelRules, mask_field, slice_field
+from stackloft_plugins.segmenters.slice_field import LevelRules, begun_field, mask_field
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +137,9 @@ class HistogramSegmenter:
         if self.scope == "stack" and threshold is None:
             threshold = self._median_threshold(stack)
 
-        def field_of(number: int, picture: Picture) -> SectionField:
-            return self._field(stack, number, picture, threshold)
-
         alone = self.channel == "luminance"
-        return laid_out(Segmentation(stack, field_of, luminance_alone=alone), self.align)
+        fields = _Fields(self.method, threshold, self.channel, stack)
+        return laid_out(Segmentation(stack, fields, luminance_alone=alone), self.align)
 
     def _of_slabs(self, stack: SliceStack) -> Segmentation:
         rules = self._slab_rules()
@@ -173,17 +172,27 @@ class HistogramSegmenter:
 
     def _median_threshold(self, stack: SliceStack) -> float:
         decode = stack.luminance if self.channel == "luminance" else stack.decode
-        levels = [self._field(stack, k, decode(k), None).threshold for k in range(len(stack))]
-        return float(np.median(levels))
+        fields = _Fields(self.method, None, self.channel, stack)
+        return float(np.median([fields(k, decode(k)).threshold for k in range(len(stack))]))
 
-    def _field(
-        self, stack: SliceStack, number: int, picture: Picture, threshold: float | None
-    ) -> SectionField:
-        said: Mapping[str, Any] = stack.hints.slices.get(number + 1, {})
-        name = stack.names[number]
+
+@dataclass(frozen=True, slots=True)
+class _Fields:
+    """The fields of photographs by their number."""
+
+    method: str
+    threshold: float | None
+    channel: str
+    stack: SliceStack
+
+    def __call__(self, number: int, picture: Picture) -> SectionField:
+        return self.begun(number, picture)()
+
+    def begun(self, number: int, picture: Picture) -> Callable[[], SectionField]:
+        """Return what makes the field without the picture, when it is called."""
+        hints, name = self.stack.hints, self.stack.names[number]
+        said: Mapping[str, Any] = hints.slices.get(number + 1, {})
         if "mask" in said:
-            return mask_field(said["mask"], stack.shape, name, said.get("turned"))
-        level = said.get("threshold", threshold)
-        return slice_field(
-            picture, LevelRules(self.method, level, self.channel, stack.hints.background), name
-        )
+            return partial(mask_field, said["mask"], self.stack.shape, name, said.get("turned"))
+        level = said.get("threshold", self.threshold)
+        return begun_field(picture, LevelRules(self.method, level, self.channel, hints.background), name)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -13,15 +15,17 @@ from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField
 from stackloft.model.slice_stack import Picture
-from stackloft_plugins.segmenters.body_window import background_of, body_window, coarse_step
+from stackloft_plugins.segmenters.across_edge import across
+from stackloft_plugins.segmenters.body_window import Background, background_of, body_window, coarse_step
 from stackloft_plugins.segmenters.edge_level import edge_level
-from stackloft_plugins.segmenters.flat_field import Light, fit_light
+from stackloft_plugins.segmenters.flat_field import Light, Window, fit_light
 from stackloft_plugins.segmenters.glare import glare_notice, without_glare
-from stackloft_plugins.segmenters.grey import Grey, filtered, grey_levels, single
+from stackloft_plugins.segmenters.grey import Grey, Levels, filtered, grey_levels, single
 from stackloft_plugins.segmenters.half_way import Edge, edge_at, grain, half_way_edge
 from stackloft_plugins.segmenters.histogram_levels import histogram_level
 from stackloft_plugins.segmenters.local_level import on_one_level
 from stackloft_plugins.segmenters.unclear_flesh import unclear_notice, unclear_share
+from stackloft_plugins.segmenters.window_levels import window_levels
 
 _NO_STEP = 4.0  # a boundary whose step is below this many standard deviations of noise is none
 _FAINT = 10.0
@@ -67,6 +71,57 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     >>> field.offset, field.values.shape, field.threshold
     ((7, 7), (46, 66), 165.0)
     """
+    return begun_field(picture, rules, name)()
+
+
+def begun_field(picture: Picture, rules: LevelRules, name: str) -> Callable[[], SectionField]:
+    """Return what makes the same field, without the picture, when it is called."""
+    look = _coarse_look(picture, rules, name)
+    grey, unit = window_levels(picture, look.window, rules.channel, look.sign, look.light)
+    return partial(_settled, look, grey, unit, rules, name)
+
+
+def _settled(look: _Look, grey: Levels, unit: float, rules: LevelRules, name: str) -> SectionField:
+    sign = look.sign
+    edge = _edge(grey, sign * look.first / unit, rules, name)
+    seen = across(grey, edge.outline, edge.level) if rules.settles else None
+    level = sign * look.first / unit if seen is None else edge_level(edge, seen)
+    notices = list(_contrast_notices(grey, edge, look.scale, unit, name))
+    notices += unclear_notice(unclear_share(grey, edge, level), name)
+    if rules.background is None and not look.background.sure:
+        notices.append(_unsure(name))
+    if rules.settles:
+        grey, edge = on_one_level(grey, edge, level, seen if level == edge.level else None, unit)
+    if sign < 0.0:
+        grey, share = without_glare(grey, level, edge)
+        notices += glare_notice(share, name)
+    return SectionField(
+        values=read_only(grey),
+        level=single(level),
+        offset=(look.window[0].start, look.window[1].start),
+        threshold=sign * level * unit,
+        notices=tuple(notices),
+        unit=unit,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Look:
+    """What every few pixels tell of a picture."""
+
+    window: Window
+    """Where the body is."""
+    first: float
+    """A grey level that tells body and background apart."""
+    sign: float
+    """1 for a body lighter than its background, else -1."""
+    light: Light | None
+    background: Background
+    scale: float
+    """Range of grey levels."""
+
+
+def _coarse_look(picture: Picture, rules: LevelRules, name: str) -> _Look:
     shape: tuple[int, int] = picture.shape[:2]
     step = coarse_step(shape)
     coarse = grey_levels(filtered(picture[::step, ::step], rules.channel))
@@ -83,25 +138,7 @@ def slice_field(picture: Picture, rules: LevelRules, name: str) -> SectionField:
     window = body_window(seen, step, shape)
     if window is None:
         raise _no_body(name, f"nothing {'above' if sign > 0 else 'below'} grey level {first:g}")
-    grey = _levels(picture[window], rules.channel, sign, light, window)
-    edge = _edge(grey, sign * first, rules, name)
-    level = edge_level(grey, edge) if rules.settles else sign * first
-    notices = list(_contrast_notices(grey, edge, _full_scale(picture, coarse), name))
-    notices += unclear_notice(unclear_share(grey, edge, level), name)
-    if rules.background is None and not background.sure:
-        notices.append(_unsure(name))
-    if rules.settles:
-        grey, edge = on_one_level(grey, edge, level)
-    if sign < 0.0:
-        grey, share = without_glare(grey, level, edge)
-        notices += glare_notice(share, name)
-    return SectionField(
-        values=read_only(grey),
-        level=single(level),
-        offset=(window[0].start, window[1].start),
-        threshold=sign * level,
-        notices=tuple(notices),
-    )
+    return _Look(window, first, sign, light, background, _full_scale(picture, coarse))
 
 
 def mask_field(path: Path, shape: tuple[int, int], name: str, turned: str | None = None) -> SectionField:
@@ -138,17 +175,6 @@ def mask_field(path: Path, shape: tuple[int, int], name: str, turned: str | None
     return SectionField(read_only(mask.astype(np.float64)), level, threshold=level)
 
 
-def _levels(
-    part: Picture, channel: str, sign: float, light: Light | None, window: tuple[slice, slice]
-) -> Grey:
-    """Return the window's grey levels with the body above, as under even light."""
-    plain = filtered(part, channel)
-    if light is not None:
-        return light.flattened(plain, window, sign)
-    grey = grey_levels(plain)
-    return grey if sign > 0.0 else np.negative(grey, out=grey)
-
-
 def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -> float:
     if rules.threshold is not None:
         return rules.threshold
@@ -157,7 +183,7 @@ def _first_level(picture: Picture, coarse: Grey, rules: LevelRules, name: str) -
     return histogram_level(grey_levels(filtered(picture, rules.channel)), rules.method, name)
 
 
-def _edge(grey: Grey, first: float, rules: LevelRules, name: str) -> Edge:
+def _edge(grey: Levels, first: float, rules: LevelRules, name: str) -> Edge:
     edge = half_way_edge(grey, first) if rules.settles else edge_at(grey, first)
     if edge is None:
         raise _no_body(name, "no boundary between a body and its background")
@@ -169,10 +195,10 @@ def _full_scale(picture: Picture, coarse: Grey) -> float:
     return 255.0 if picture.dtype == np.uint8 else float(np.ptp(coarse))
 
 
-def _contrast_notices(grey: Grey, edge: Edge, scale: float, name: str) -> tuple[Notice, ...]:
-    step, noise = edge.contrast, edge.noise
+def _contrast_notices(grey: Levels, edge: Edge, scale: float, unit: float, name: str) -> tuple[Notice, ...]:
+    step, noise = unit * edge.contrast, unit * edge.noise
     if step < _FAINT * noise:  # shadow and juice beside the body are no noise
-        noise = min(noise, grain(grey, edge.mask))
+        noise = min(noise, unit * grain(grey, edge.outline.outer))
     if step < _NO_STEP * noise or step < _NO_STEP_OF_SCALE * scale:
         raise _no_body(name, f"a step of {step:.3g} grey levels at the boundary, noise {noise:.2g}")
     if step >= max(_FAINT * noise, _FAINT_OF_SCALE * scale):

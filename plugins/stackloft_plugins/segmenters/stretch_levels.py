@@ -14,22 +14,19 @@ boundary that the last one's levels give.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from stackloft.geometry.edge_positions import EdgeShape, edge_positions
 from stackloft.model.arrays import FloatArray, IntArray
-from stackloft_plugins.segmenters.body_window import main_body
-from stackloft_plugins.segmenters.cell_means import cell_means
-from stackloft_plugins.segmenters.edge_level import boundary_points, seen_across
-from stackloft_plugins.segmenters.grey import Grey
-from stackloft_plugins.segmenters.half_way import Edge
+from stackloft_plugins.segmenters.across_edge import ACROSS, REACH, Across, across
+from stackloft_plugins.segmenters.body_outline import outline_in
+from stackloft_plugins.segmenters.cell_means import CellMeans, cell_means
+from stackloft_plugins.segmenters.grey import Grey, Levels
 
 UNEVEN = 0.05
 """Of the step: standard deviation along the outline of what lies beside it, above which it is not even."""
-_REACH = 6.0
-_SAMPLES = 49
 _POINTS = 20
 """Boundary pixels in a stretch, at least."""
 _STRETCHES = (8, 60)
@@ -54,26 +51,35 @@ _SMOOTH = 6.0
 _TRUST = 1e-6
 
 
-def stretch_levels(grey: Grey, edge: Edge, level: float) -> Grey | None:
-    """Return the level pixel by pixel, (rows, columns).
+def stretch_levels(grey: Levels, contrast: float, level: float, seen: Across) -> CellMeans | None:
+    """Return the level all over the picture.
 
     Returns None when what lies beside the outline is even, when it is short, lies at the border, or has
     edges unlike the model.
+
+    Parameters
+    ----------
+    grey : array (rows, columns)
+        Body above background.
+    contrast : float
+        Step across the boundary.
+    level : float
+        The one level.
+    seen : Across
+        What is seen across the boundary at that level.
     """
-    shape: tuple[int, int] = grey.shape
-    found: Grey | None = None
+    shape = (grey.shape[0], grey.shape[1])
+    found: CellMeans | None = None
     lens: EdgeShape | None = None
     for slack in _SLACKS:
-        even, at = (grey, level) if found is None else (np.subtract(grey, found), 0.0)
-        mask = main_body((even > at).view(np.uint8))
-        about = replace(edge, body=at + edge.contrast, background=at - edge.contrast, mask=mask)
-        step, more = _along(even, about, slack, lens)
+        about = seen if found is None else across(grey, outline_in(found.below(grey)), 0.0, found)
+        step, more = _along(about, level if found is None else 0.0, contrast, slack, lens)
         if more is None:
             return None
         lens = more.lens
-        moved = cell_means(shape, _numbers(more.points, shape), more.levels, _SMOOTH, _TRUST).everywhere()
-        moved += np.float32(level) if found is None else found
-        found = np.clip(moved, level - _FURTHEST * step, level + _FURTHEST * step, out=moved)
+        moved = cell_means(shape, _numbers(more.points, shape), more.levels, _SMOOTH, _TRUST).cells
+        moved += np.float32(level) if found is None else found.cells
+        found = CellMeans(np.clip(moved, level - _FURTHEST * step, level + _FURTHEST * step), shape)
     return found
 
 
@@ -88,31 +94,26 @@ class _Along:
     lens: EdgeShape
 
 
-def _along(grey: Grey, edge: Edge, slack: float, lens: EdgeShape | None) -> tuple[float, _Along | None]:
+def _along(
+    about: Across, level: float, contrast: float, slack: float, lens: EdgeShape | None
+) -> tuple[float, _Along | None]:
     """Return the usual step, and what was seen; None where there is nothing to follow."""
-    points, normals = boundary_points(grey, edge)
-    if len(points) < _POINTS * _STRETCHES[0] // 2:
+    points = about.points
+    if about.looked_for < _POINTS * _STRETCHES[0] // 2 or len(points) < 0.5 * about.looked_for:
         return 0.0, None
-    across = np.linspace(-_REACH, _REACH, _SAMPLES)
-    seen, inside = seen_across(grey, points, normals, across)
-    seen -= np.float32(edge.level)
-    points = points[inside]
-    if len(points) < 0.5 * len(inside):
-        return 0.0, None
+    seen = about.levels - np.float32(level)
     count = int(np.clip(len(points) // _POINTS, *_STRETCHES))
-    stretches = [
-        _clean(stretch, across, _OTHERWISE * edge.contrast / 2) for stretch in _stretches(seen, count)
-    ]
+    stretches = [_clean(stretch, _OTHERWISE * contrast) for stretch in _stretches(seen, count)]
     profiles = np.stack([_usual(stretch) for stretch in stretches])
     seen_well = (profiles[:, 0] > profiles[:, -1]) & [len(stretch) >= _FEWEST for stretch in stretches]
     step = _step(profiles[seen_well])
-    if seen_well.mean() < _BELIEVED or not _uneven(profiles[seen_well], across, step):
+    if seen_well.mean() < _BELIEVED or not _uneven(profiles[seen_well], step):
         return step, None
-    found = edge_positions(profiles, _REACH, slack, lens)
+    found = edge_positions(profiles, REACH, slack, lens)
     chosen = np.flatnonzero(seen_well & (found.misfit < _POOREST))
-    if len(chosen) < _BELIEVED * count or not _uneven(profiles[chosen], across, _step(profiles[chosen])):
+    if len(chosen) < _BELIEVED * count or not _uneven(profiles[chosen], _step(profiles[chosen])):
         return step, None
-    levels = np.array([np.interp(found.position[k], across, profiles[k]) for k in chosen])
+    levels = np.array([np.interp(found.position[k], ACROSS, profiles[k]) for k in chosen])
     calm = np.median([np.roll(levels, 1), levels, np.roll(levels, -1)], axis=0)
     along = (np.arange(len(points)) + 0.5) / len(points)
     beside = np.interp(along, (chosen + 0.5) / count, calm, period=1.0)
@@ -124,9 +125,9 @@ def _step(profiles: FloatArray) -> float:
     return float(np.median(profiles[:, 0] - profiles[:, -1])) if len(profiles) else 0.0
 
 
-def _uneven(profiles: FloatArray, across: FloatArray, step: float) -> bool:
+def _uneven(profiles: FloatArray, step: float) -> bool:
     """Return whether what lies beside the outline changes along it."""
-    return float(profiles[:, across > 1.5].std(axis=0).max()) >= UNEVEN * step
+    return float(profiles[:, ACROSS > 1.5].std(axis=0).max()) >= UNEVEN * step
 
 
 def _stretches(seen: Grey, count: int) -> list[Grey]:
@@ -137,10 +138,10 @@ def _stretches(seen: Grey, count: int) -> list[Grey]:
     return [seen[np.arange(int(m - half), int(m + half)) % n] for m in middles]
 
 
-def _clean(stretch: Grey, across: FloatArray, least: float) -> Grey:
+def _clean(stretch: Grey, least: float) -> Grey:
     """Return the rows that show flesh on one side and plate on the other; too few to count where few do."""
-    flesh = (stretch[:, across < -_CLEAR] > -least).all(axis=1)
-    plate = (stretch[:, across > _CLEAR] < least).all(axis=1)
+    flesh = (stretch[:, ACROSS < -_CLEAR] > -least).all(axis=1)
+    plate = (stretch[:, ACROSS > _CLEAR] < least).all(axis=1)
     clean = stretch[flesh & plate]
     return clean if len(clean) >= _FEWEST else stretch[: _FEWEST - 1]
 

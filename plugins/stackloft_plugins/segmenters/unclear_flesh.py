@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from stackloft.model.notices import Notice
-from stackloft_plugins.segmenters.grey import Grey
+from stackloft_plugins.segmenters.grey import Levels
 from stackloft_plugins.segmenters.half_way import Edge
 
 UNCLEAR = 0.15
@@ -33,7 +33,7 @@ _BELT = 20
 _COARSE = 250
 
 
-def unclear_share(grey: Grey, edge: Edge, level: float) -> float:
+def unclear_share(grey: Levels, edge: Edge, level: float) -> float:
     """Return the share of the belt along the outline that lies between plate and level.
 
     Parameters
