@@ -46,3 +46,18 @@ def test_a_part_that_ends_where_another_begins_is_told_of():
 
 def test_a_part_that_only_ends_is_not():
     assert "part-lost" not in codes(stack([0.0, 40.0], [0.0, 40.0], [0.0], [0.0]))
+
+
+@pytest.mark.parametrize(("turn", "told"), [(10.0, 0), (40.0, 0), (50.0, 4), (55.0, 4)])
+def test_crescents_carried_far_round_are_told_of(turn, told):
+    """A coil of eleven sections had 5 % too much area, without a word."""
+    t = np.radians(70.0) * np.linspace(-1.0, 1.0, 80)
+    half = 6.0 * np.sqrt(1.0 - (t / t[-1]) ** 2)
+    sides = [np.stack([r * np.cos(t), r * np.sin(t)], axis=1) for r in (24.0 + half, 24.0 - half)]
+    crescent = np.concatenate([sides[0][:-1], sides[1][:0:-1]])
+    sections = []
+    for k in range(5):
+        a = np.radians(turn * k)
+        turned = crescent @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
+        sections.append(Section(8.0 * k, (Loop(turned),), f"cut {k}"))
+    assert codes(ContourStack(tuple(sections))).count("part-turns") == told

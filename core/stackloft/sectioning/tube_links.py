@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from scipy.interpolate import PchipInterpolator
 
-from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
 from stackloft.sectioning.level_changes import (
     Joined,
@@ -19,8 +18,16 @@ from stackloft.sectioning.level_changes import (
 )
 from stackloft.sectioning.levels import Level, covered, is_hole, part_level
 from stackloft.sectioning.line_parting import Parting, parting_levels
+from stackloft.sectioning.link_notices import (
+    apart_notice,
+    carried_far,
+    chosen_notice,
+    tangle,
+    turned_notice,
+    weak_notice,
+)
 from stackloft.sectioning.loop_links import LinkedLoops, components, link_loops, simpler_links
-from stackloft.sectioning.loop_numbers import Links, by_size, numbered_links
+from stackloft.sectioning.loop_numbers import Links, numbered_links
 from stackloft.sectioning.lying_limbs import limbs_cut_off
 from stackloft.sectioning.section_regions import Regions, section_regions
 
@@ -75,16 +82,16 @@ class LinkFinder:
         else:
             every = link_loops(*regions)
         if said is None and _come_and_go(before, after, every):
-            self.notices.append(_apart(before, after))
+            self.notices.append(apart_notice(before, after))
         found: list[Linked] = []
         for linked in every:
             if linked.weak:
-                self.notices.append(_weak(before, after, linked))
+                self.notices.append(weak_notice(before, after, linked))
             planned = self._planned(before, after, linked)
             if planned is None and said is None:
                 planned = self._untangled(before, after, linked, regions)
             if planned is None:
-                raise _tangle(before, after, linked)
+                raise tangle(before, after, linked)
             found += planned
         return found
 
@@ -93,6 +100,10 @@ class LinkFinder:
         if not linked.before or not linked.after:
             return [(linked, None)]
         if linked.plain:
+            if before.section is not None is not after.section and not linked.weak:
+                one, two = before.polygons[linked.before[0]], after.polygons[linked.after[0]]
+                if not is_hole(one) and carried_far(one, two):
+                    self.notices.append(turned_notice(before.name, after.name))
             return [(linked, self._limbs(before, after, linked))]
         change = self._change(before, after, linked)
         if change is None:
@@ -105,7 +116,7 @@ class LinkFinder:
             pairs = [
                 LinkedLoops((linked.before[i],), (j,)) for i, j in zip(followed, linked.after, strict=True)
             ]
-            self.notices.append(_chosen(before, after, pairs))
+            self.notices.append(chosen_notice(before, after, pairs))
         return [(linked, change)]
 
     def _untangled(
@@ -115,7 +126,7 @@ class LinkFinder:
         for simpler in simpler_links(*regions, linked):
             plans = [self._planned(before, after, one) for one in simpler]
             if all(plan is not None for plan in plans):
-                self.notices.append(_chosen(before, after, simpler))
+                self.notices.append(chosen_notice(before, after, simpler))
                 return [item for plan in plans for item in plan or []]
         return None
 
@@ -177,15 +188,6 @@ def _regions(level: Level) -> Regions:
     return section_regions(list(level.polygons), level.name)
 
 
-def _weak(before: Level, after: Level, linked: LinkedLoops) -> Notice:
-    return Notice(
-        "weak-link",
-        f"{before.name} to {after.name}: loops that overlap by less than 30 % of the smaller one were taken"
-        f" for one part of the body ({_told(before, after, linked)}): cut thinner slices, or say links in"
-        " stack.toml",
-    )
-
-
 def _come_and_go(before: Level, after: Level, every: list[LinkedLoops]) -> bool:
     """Return whether one piece ends and another begins between two sections."""
     if before.section is None or after.section is None:
@@ -193,40 +195,3 @@ def _come_and_go(before: Level, after: Level, every: list[LinkedLoops]) -> bool:
     gone = any(not is_hole(before.polygons[i]) for one in every if not one.after for i in one.before)
     new = any(not is_hole(after.polygons[j]) for one in every if not one.before for j in one.after)
     return gone and new
-
-
-def _apart(before: Level, after: Level) -> Notice:
-    return Notice(
-        "part-lost",
-        f"{before.name} to {after.name}: a part of the body ends and another begins between them, as their"
-        " loops do not overlap; if it is one part that moves sideways, cut thinner slices or say links in"
-        " stack.toml",
-    )
-
-
-def _chosen(before: Level, after: Level, choice: list[LinkedLoops]) -> Notice:
-    told = "; ".join(_told(before, after, linked) for linked in choice)
-    return Notice(
-        "ambiguous-link",
-        f"{before.name} to {after.name}: the loops part and meet in more ways than one; taken: {told}:"
-        " cut thinner slices, or say links in stack.toml",
-    )
-
-
-def _told(before: Level, after: Level, linked: LinkedLoops) -> str:
-    """Return a link in people's numbers: loops 1, 3 → 2."""
-    numbers = [
-        ", ".join(str(by_size(level.polygons).index(k) + 1) for k in chosen) or "none"
-        for level, chosen in ((before, linked.before), (after, linked.after))
-    ]
-    return f"loop {numbers[0]} → {numbers[1]}"
-
-
-def _tangle(before: Level, after: Level, linked: LinkedLoops) -> InputError:
-    return InputError(
-        "neighbouring sections cannot be linked: loops part and meet between them in more ways than one",
-        where=f"{before.name} to {after.name}",
-        found=f"{len(linked.before)} loops, then {len(linked.after)}",
-        fix="cut thinner slices there, say links in stack.toml, or use --method shape-interpolation or"
-        " cavalieri",
-    )

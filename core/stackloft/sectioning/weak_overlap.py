@@ -8,6 +8,7 @@ from stackloft.geometry.second_moments import half_axes
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.notices import Notice
 from stackloft.sectioning.equal_points import EqualSections
+from stackloft.sectioning.link_notices import carried_far, turned_notice
 from stackloft.sectioning.loop_links import BELONG
 from stackloft.sectioning.section_regions import overlap
 
@@ -16,18 +17,28 @@ MOVED = 0.5
 
 
 def weak_overlaps(sections: EqualSections, contours: ContourStack) -> list[Notice]:
-    """Return a notice for every section that overlaps the one before by less than 30 % of the smaller."""
+    """Return a notice for every section that overlaps the one before by less than 30 % of the smaller.
+
+    And for every long one that lies on little more than half of itself.
+    """
     plane, centres = sections.points[..., :2], sections.curves.centroids
     moved = np.linalg.norm(np.diff(centres, axis=0), axis=1)
     widths = half_axes(plane)[:, 1]
     perhaps = np.flatnonzero(moved > MOVED * np.minimum(widths[1:], widths[:-1]))
     names = [section.name for section in contours.sections]
-    return [
-        Notice(
-            "weak-link",
-            f"{names[k]} to {names[k + 1]}: the loops overlap by less than 30 % of the smaller one: what lies"
-            " between them is hardly known; cut thinner slices",
-        )
-        for k in perhaps
-        if overlap([plane[k]], [plane[k + 1]]) < BELONG
-    ]
+    notices = []
+    for k in perhaps:
+        one, two = plane[k], plane[k + 1]
+        if overlap([one], [two]) < BELONG:
+            notices.append(_weak(names[k], names[k + 1]))
+        elif carried_far(one, two):
+            notices.append(turned_notice(names[k], names[k + 1]))
+    return notices
+
+
+def _weak(before: str, after: str) -> Notice:
+    return Notice(
+        "weak-link",
+        f"{before} to {after}: the loops overlap by less than 30 % of the smaller one: what lies between"
+        " them is hardly known; cut thinner slices",
+    )
