@@ -20,13 +20,12 @@ LONG = 1.5
 """Perimeter² / (4π area) of a long loop; an ellipse of 3 : 1 has 1.5."""
 
 
-def weak_notice(before: Level, after: Level, linked: LinkedLoops) -> Notice:
-    """Return what is told of loops that hardly overlap."""
+def weak_notice(before: str, after: str, told: str = "loop 1 → 1") -> Notice:
+    """Return what is told of loops that hardly overlap; `told` is the link in people's numbers."""
     return Notice(
         "weak-link",
-        f"{before.name} to {after.name}: loops that overlap by less than 30 % of the smaller one were taken"
-        f" for one part of the body ({_told(before, after, linked)}): cut thinner slices, or say links in"
-        " stack.toml",
+        f"{before} to {after}: loops that overlap by less than 30 % of the smaller one were taken for one"
+        f" part of the body ({told}): cut thinner slices, or say links in stack.toml",
     )
 
 
@@ -57,7 +56,7 @@ def turned_notice(before: str, after: str) -> Notice:
 
 def chosen_notice(before: Level, after: Level, choice: list[LinkedLoops]) -> Notice:
     """Return what is told where links were chosen among several."""
-    told = "; ".join(_told(before, after, linked) for linked in choice)
+    told = "; ".join(link_numbers(before, after, linked) for linked in choice)
     return Notice(
         "ambiguous-link",
         f"{before.name} to {after.name}: the loops part and meet in more ways than one; taken: {told}:"
@@ -65,7 +64,7 @@ def chosen_notice(before: Level, after: Level, choice: list[LinkedLoops]) -> Not
     )
 
 
-def _told(before: Level, after: Level, linked: LinkedLoops) -> str:
+def link_numbers(before: Level, after: Level, linked: LinkedLoops) -> str:
     """Return a link in people's numbers: loops 1, 3 → 2."""
     numbers = [
         ", ".join(str(by_size(level.polygons).index(k) + 1) for k in chosen) or "none"

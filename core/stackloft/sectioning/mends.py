@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
 class Mends:
     """Sections after which something is done, by number."""
 
-    limbs: frozenset[int] = field(default=frozenset())
+    limbs: frozenset[int] = frozenset()
     """Limbs that lie are cut off, as `limbs_cut_off`."""
-    filled: frozenset[int] = field(default=frozenset())
+    filled: frozenset[int] = frozenset()
     """Levels are put in even where loops go on one to one."""
 
     def more(self, folded: AbstractSet[int], slipped: AbstractSet[int], limbs: AbstractSet[int]) -> Mends:
@@ -30,3 +30,7 @@ class Mends:
         if cut:
             return replace(self, limbs=self.limbs | cut)
         return replace(self, filled=self.filled | folded)
+
+
+STRAIGHT = Mends()
+"""Nothing is done anywhere."""

@@ -22,6 +22,7 @@ from stackloft.sectioning.link_notices import (
     apart_notice,
     carried_far,
     chosen_notice,
+    link_numbers,
     tangle,
     turned_notice,
     weak_notice,
@@ -86,7 +87,7 @@ class LinkFinder:
         found: list[Linked] = []
         for linked in every:
             if linked.weak:
-                self.notices.append(weak_notice(before, after, linked))
+                self.notices.append(weak_notice(before.name, after.name, link_numbers(before, after, linked)))
             planned = self._planned(before, after, linked)
             if planned is None and said is None:
                 planned = self._untangled(before, after, linked, regions)

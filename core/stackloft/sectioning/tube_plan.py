@@ -14,7 +14,7 @@ from stackloft.sectioning.ends import StackEnds, plan_ends
 from stackloft.sectioning.levels import Level, is_hole, make_level
 from stackloft.sectioning.line_roof import line_end
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
-from stackloft.sectioning.mends import Mends
+from stackloft.sectioning.mends import STRAIGHT, Mends
 from stackloft.sectioning.stack_roofs import OUTER, Roof, Side, roofs_of, sees_all
 from stackloft.sectioning.tube_ends import (
     SIDES,
@@ -28,7 +28,6 @@ SPECK = 1e-6
 """Loops below this fraction of the section's largest are no part of any body."""
 LONG = 2.2
 """Perimeter² / (4π area) of an outline that needs more points; a circle has 1, a 4.5 : 1 ellipse 2."""
-STRAIGHT = Mends()
 FINER = 3
 """Times as many points on long loops, and on tubes with levels put in: neighbouring levels there lie so
 close that the difference of two coarse curves would show as a ledge of false area."""

@@ -25,12 +25,11 @@ from stackloft.model.notices import Notice
 from stackloft.sectioning.level_changes import Joined, Straight, cornered
 from stackloft.sectioning.levels import Level, part_level, put_in_level
 from stackloft.sectioning.loop_numbers import Links
-from stackloft.sectioning.mends import Mends
+from stackloft.sectioning.mends import STRAIGHT, Mends
 from stackloft.sectioning.sections_between import between
 from stackloft.sectioning.tube_links import Change, LinkFinder
 from stackloft.sectioning.tube_rows import JointUse, Row, TubeOfLoops, level_rows, part_row, pinned_row
 
-STRAIGHT = Mends()
 FILLING = (0.25, 0.5, 0.75)
 """Where levels are put in between loops that differ too much to be joined at once."""
 

@@ -8,7 +8,7 @@ from stackloft.geometry.second_moments import half_axes
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.notices import Notice
 from stackloft.sectioning.equal_points import EqualSections
-from stackloft.sectioning.link_notices import carried_far, turned_notice
+from stackloft.sectioning.link_notices import carried_far, turned_notice, weak_notice
 from stackloft.sectioning.loop_links import BELONG
 from stackloft.sectioning.section_regions import overlap
 
@@ -30,15 +30,7 @@ def weak_overlaps(sections: EqualSections, contours: ContourStack) -> list[Notic
     for k in perhaps:
         one, two = plane[k], plane[k + 1]
         if overlap([one], [two]) < BELONG:
-            notices.append(_weak(names[k], names[k + 1]))
+            notices.append(weak_notice(names[k], names[k + 1]))
         elif carried_far(one, two):
             notices.append(turned_notice(names[k], names[k + 1]))
     return notices
-
-
-def _weak(before: str, after: str) -> Notice:
-    return Notice(
-        "weak-link",
-        f"{before} to {after}: the loops overlap by less than 30 % of the smaller one: what lies between"
-        " them is hardly known; cut thinner slices",
-    )

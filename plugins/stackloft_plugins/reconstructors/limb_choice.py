@@ -6,7 +6,7 @@ from collections.abc import Set as AbstractSet
 
 import numpy as np
 
-from stackloft.geometry.patch_integrals import solid_integrals
+from stackloft.geometry.patch_integrals import patch_areas
 from stackloft.model.arrays import FloatArray
 from stackloft_plugins.reconstructors.skin_areas import Skinned
 
@@ -42,8 +42,7 @@ def _areas_between(skinned: list[Skinned], z: FloatArray) -> FloatArray:
     found = np.zeros(len(z) - 1)
     for one in skinned:
         middle = one.patches[:, 0, [0, 3], 0, 2].mean(axis=1)
-        for row, interval in enumerate(np.searchsorted(z, middle) - 1):
-            if 0 <= interval < len(found):
-                patches = one.patches[row : row + 1]
-                found[interval] += solid_integrals(patches, (0.0, 0.0), np.eye(4), degree=4)[1]
+        interval = np.searchsorted(z, middle) - 1
+        within = (interval >= 0) & (interval < len(found))
+        np.add.at(found, interval[within], patch_areas(one.patches[within], degree=4).sum(axis=1))
     return found

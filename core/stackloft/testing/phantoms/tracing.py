@@ -15,6 +15,7 @@ import numpy as np
 
 from stackloft.model.arrays import FloatArray, frozen_floats, frozen_ints
 from stackloft.model.contour_stack import Loop
+from stackloft.model.errors import InputError
 from stackloft.testing.phantoms.nesting import oriented
 from stackloft.testing.phantoms.plane_cut import PlaneCut
 
@@ -57,6 +58,11 @@ def trace(
     detail : int
         Steps of the grid across the box; a loop narrower than a step may be missed. Where two fields come so
         close that a step joins what does not touch, they have no corner there, and the grid is refined.
+
+    Raises
+    ------
+    InputError
+        Parts come closer than the finest grid tells apart.
     """
     for finer in _FINER:
         try:
@@ -64,7 +70,11 @@ def trace(
         except _NoCornerError:
             continue
         return oriented(_told_once([_loop(cut, arcs, points) for arcs in every if arcs]))
-    raise ValueError(f"z = {cut.z:g} mm: two parts of the body all but touch; cut it elsewhere")
+    raise InputError(
+        "two parts of the body all but touch on a section",
+        found=f"z = {cut.z:g} mm",
+        fix="give another number of --sections, or another --placing",
+    )
 
 
 class _NoCornerError(Exception):
