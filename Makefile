@@ -3,7 +3,9 @@
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-TREES := core plugins tests benchmarks
+COMPILED := core/stackloft/compiled
+KERNELS := $(VENV)/.kernels
+TREES := core plugins tests benchmarks hatch_build.py
 PYTHON_VERSIONS := 3.11 3.12 3.13 3.14
 UV ?= uv
 
@@ -19,13 +21,18 @@ $(READY): pyproject.toml requirements/make_venv.sh $(wildcard requirements/py*.t
 	sh requirements/make_venv.sh $(VENV)
 	@touch $@
 
-demo: $(READY) ## measure a sample stack; results in demo_out/
+# The kernels in C are compiled anew when their sources change (the folder: when one comes or goes). Without a
+# compiler there is no stamp, so the next run looks again; everything works, slower on scans.
+$(KERNELS): $(READY) $(COMPILED)/building.py $(COMPILED)/source $(wildcard $(COMPILED)/source/*)
+	@if $(BIN)/python -m stackloft.compiled.building; then touch $@; else rm -f $@; fi
+
+demo: $(KERNELS) ## measure a sample stack; results in demo_out/
 	$(BIN)/stackloft measure sample_stacks/apple --out demo_out --write stl
 
-test: $(READY) ## the tests, within ten minutes on two cores
+test: $(KERNELS) ## the tests, within ten minutes on two cores
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "not prove"
 
-check: $(READY) ## style, types, architecture, dependencies
+check: $(KERNELS) ## style, types, architecture, dependencies
 	$(BIN)/ruff format --check $(wildcard $(TREES))
 	$(BIN)/ruff check $(wildcard $(TREES))
 	$(BIN)/mypy
@@ -34,10 +41,10 @@ check: $(READY) ## style, types, architecture, dependencies
 	$(BIN)/typos
 	$(BIN)/validate-pyproject pyproject.toml
 
-prove: $(READY) ## the full counts that the claims name; slow
+prove: $(KERNELS) ## the full counts that the claims name; slow
 	STACKLOFT_PROOF=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m prove
 
-bench: $(READY) ## ratios and times, one script of benchmarks/ after the other
+bench: $(KERNELS) ## ratios and times, one script of benchmarks/ after the other
 	@for script in $(sort $(wildcard benchmarks/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 lock: ## renew requirements/py*.txt from pyproject.toml (needs uv: https://docs.astral.sh/uv/)
@@ -49,4 +56,4 @@ lock: ## renew requirements/py*.txt from pyproject.toml (needs uv: https://docs.
 	done
 
 clean: ## remove the environment and everything that a run left behind
-	rm -rf $(VENV) demo_out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(COMPILED)/_kernels* demo_out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
