@@ -8,7 +8,7 @@ from importlib.metadata import Distribution
 
 import pytest
 
-from stackloft.cli.doctor import codecs, libraries, rendering
+from stackloft.cli.doctor import codecs, kernels, libraries, rendering
 from stackloft.cli.doctor.entry_points import stale_entry_points
 from stackloft.registry.child import Answer
 from stackloft.testing.conformance.throwaway import write_distribution
@@ -144,3 +144,27 @@ def test_whether_pictures_can_be_drawn_is_an_answer_and_no_crash():
     assert row.state in {"ok", "warning"}
     if row.state == "warning":
         assert row.fix
+
+
+def test_kernels_that_are_used_are_fine(monkeypatch):
+    monkeypatch.setattr(kernels, "kernels", object)
+    assert kernels.compiled_kernels().state == "ok"
+
+
+@pytest.mark.parametrize(
+    ("environment", "fix"),
+    [
+        ({"CC": sys.executable}, "python -m stackloft.compiled.building"),
+        ({"CC": "/nowhere/cc"}, "apt-get install gcc libc6-dev, then: python -m stackloft.compiled.building"),
+        ({"STACKLOFT_COMPILED": "0"}, "unset STACKLOFT_COMPILED"),
+    ],
+)
+def test_kernels_that_are_not_used_are_a_warning_with_the_way_to_get_them(environment, fix, monkeypatch):
+    monkeypatch.delenv("STACKLOFT_COMPILED", raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(kernels, "kernels", lambda: None)
+    monkeypatch.setattr(kernels, "why_not", lambda: "it was not compiled")
+    row = kernels.compiled_kernels()
+    assert (row.state, row.fix) == ("warning", fix)
+    assert "it was not compiled" in row.detail

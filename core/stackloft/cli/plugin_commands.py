@@ -44,7 +44,7 @@ def plugins_show(name: a.PluginName, json: a.Json = False) -> None:
 @plugin_commands.command("doctor")
 @guarded
 def plugins_doctor(names: Names = None, json: a.Json = False) -> None:
-    """Load each plug-in in a process of its own; look for codecs, system libraries and rendering."""
+    """Load each plug-in in a process of its own; look for codecs, system libraries, kernels, rendering."""
     from stackloft.cli.doctor.report import run
 
     if not run(names or (), as_json=json):

@@ -1,4 +1,4 @@
-"""The doctor's round: every plug-in alone, stale entry points, codecs, system libraries, rendering."""
+"""The doctor's round: plug-ins alone, stale entry points, codecs, system libraries, kernels, rendering."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rich.text import Text
 
 from stackloft.cli.doctor.codecs import transfer_syntaxes
 from stackloft.cli.doctor.entry_points import stale_entry_points
+from stackloft.cli.doctor.kernels import compiled_kernels
 from stackloft.cli.doctor.libraries import packages, system_fix
 from stackloft.cli.doctor.rendering import rendering
 from stackloft.cli.doctor.row import Row
@@ -46,7 +47,8 @@ def examine(names: Sequence[str]) -> list[Row]:
         listings = [listing for name in names for listing in listings_called(name)]
         return [_plugin(health) for health in load_each_alone(tuple(dict.fromkeys(listings)))]
     rows = [_plugin(health) for health in load_each_alone(catalogue())]
-    return [*rows, *stale_entry_points(), *packages(), *transfer_syntaxes(), rendering()]
+    machine = (*packages(), *transfer_syntaxes(), compiled_kernels(), rendering())
+    return [*rows, *stale_entry_points(), *machine]
 
 
 def _plugin(health: Health) -> Row:

@@ -10,7 +10,7 @@ class Row:
     """One thing that was looked at."""
 
     topic: str
-    """``plug-in``, ``entry point``, ``transfer syntax``, ``package``, ``rendering``"""
+    """``plug-in``, ``entry point``, ``transfer syntax``, ``package``, ``kernels``, ``rendering``"""
     name: str
     state: str
     """``ok``, ``warning`` (works, or is optional) or ``broken``"""
