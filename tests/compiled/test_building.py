@@ -73,11 +73,11 @@ def test_builds_at_once_leave_one_whole_library_at_any_time(tmp_path):
         "from pathlib import Path\nfrom stackloft.compiled import building\n"
         f"building.build(Path({str(target)!r}))"
     )
-    running = [subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE) for _ in range(4)]
+    running = [subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE) for _ in range(2)]
     check = f"import ctypes\nassert ctypes.CDLL({str(target)!r}).stackloft_abi() == {building.fingerprint()}"
     while any(process.poll() is None for process in running):
         subprocess.run([sys.executable, "-c", check], check=True)
-    assert [process.communicate()[1] for process in running] == [b""] * 4
+    assert [process.communicate()[1] for process in running] == [b""] * 2
     assert list(tmp_path.iterdir()) == [target]
 
 

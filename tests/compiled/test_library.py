@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -13,10 +14,10 @@ from stackloft.compiled import building, library
 needs_compiler = pytest.mark.usefixtures("c_compiler")
 
 
-@pytest.fixture
-def built(c_compiler, tmp_path):
+@pytest.fixture(scope="module")
+def built(c_compiler, tmp_path_factory):
     """A library compiled now from the sources that there are."""
-    return building.build(tmp_path / building.LIBRARY.name)
+    return building.build(tmp_path_factory.mktemp("built") / building.LIBRARY.name)
 
 
 @pytest.fixture
@@ -29,7 +30,15 @@ def of_its_own(monkeypatch):
 
 @needs_compiler
 def test_the_sources_own_library_is_loaded_once_by_many_threads(built, of_its_own):
+    load, loads = library.load, []
+
+    def slowly(path):  # long enough for every thread to ask meanwhile
+        loads.append(path)
+        time.sleep(0.1)
+        return load(path)
+
     of_its_own.setattr(library, "LIBRARY", built)
+    of_its_own.setattr(library, "load", slowly)
     of_its_own.delenv(building.SWITCH, raising=False)
     found = []
     threads = [threading.Thread(target=lambda: found.append(library.kernels())) for _ in range(8)]
@@ -37,6 +46,7 @@ def test_the_sources_own_library_is_loaded_once_by_many_threads(built, of_its_ow
         thread.start()
     for thread in threads:
         thread.join()
+    assert loads == [built]
     assert found[0].stackloft_abi() == building.fingerprint()
     assert {id(one) for one in found} == {id(found[0])}
     assert library.why_not() == ""
