@@ -24,7 +24,7 @@ COMPILERS = ("cc", "gcc", "clang")
 # No fused multiply-add (-ffp-contract): figures would depend on the processor.
 FLAGS = (
     *("-O3", "-std=c11", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno"),
-    *("-fvisibility=default", "-Wall", "-Wextra"),
+    *("-fvisibility=hidden", "-Wall", "-Wextra"),
 )
 SWITCH = "STACKLOFT_COMPILED"
 """Environment variable; ``0``: kernels are neither compiled nor loaded."""

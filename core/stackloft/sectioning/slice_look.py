@@ -8,13 +8,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.solid_piece import SolidPiece, solid_piece
 from stackloft.model.arrays import BoolArray, IntArray
-from stackloft.model.segmentation import SectionField, Segmentation
+from stackloft.model.segmentation import SectionField, Segmentation, above
 from stackloft.model.slice_stack import Picture
 from stackloft.sectioning.slice_pieces import Corner, Pieces, body_pieces, pieces_of
-from stackloft.sectioning.voids import CRACK, closed_background
+from stackloft.sectioning.voids import CRACKS, closed_background
 
-FRAME = 2 * CRACK + 1
+FRAME = CRACKS.frame
 """Pixels around the bodies within which background is looked through for what is closed in."""
 
 
@@ -38,19 +39,23 @@ class SliceLook:
 
 def look_at(segmentation: Segmentation, picture: Picture, section: SectionField) -> SliceLook:
     """Return one slice's pieces, their pixels and labels, and the background that they close in."""
+    if not segmentation.labels and section.local_levels is None:
+        solid = solid_piece(section.values, section.level, CRACKS)
+        if solid is not None and section.values.shape == picture.shape[:2]:
+            return _look_at_solid(section, solid)
     if segmentation.labels:
         (pieces, sizes, labels, corner), outline = _labelled_pieces(picture), None
-        above = pieces > 0
+        shown = pieces > 0
     else:
-        above = section.above()
-        found = body_pieces(above)
+        shown = section.above()
+        found = body_pieces(shown)
         pieces, sizes = found.pieces, found.sizes
         corner = (section.offset[0] + found.corner[0], section.offset[1] + found.corner[1])
         outline = None if found.outline is None else found.outline + np.array(section.offset[::-1], np.int32)
         labels = np.zeros(len(sizes), dtype=np.int64)
     rows, columns = framed_window(pieces.shape, corner, FRAME, picture.shape)
-    if above.shape == picture.shape[:2]:
-        body = above[rows, columns]
+    if shown.shape == picture.shape[:2]:
+        body = shown[rows, columns]
     else:
         body = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.bool_)
         top, left = corner[0] - rows.start, corner[1] - columns.start
@@ -59,6 +64,19 @@ def look_at(segmentation: Segmentation, picture: Picture, section: SectionField)
     apart = body.shape == tuple(side + 2 * FRAME for side in pieces.shape)
     closed = closed_background(body, solid=outline is not None, apart=apart) if looked else None
     return SliceLook(pieces, sizes, labels, corner, outline, body, closed, (rows.start, columns.start))
+
+
+def _look_at_solid(section: SectionField, found: SolidPiece) -> SliceLook:
+    """Return the look of a whole slice whose body is known to be one piece without a hole."""
+    rows, columns = framed_window(found.shape, found.corner, FRAME, section.values.shape)
+    body = above(section.values[rows, columns], section.level)
+    framed = (rows.start, columns.start)
+    top, left = (found.corner[k] - framed[k] for k in (0, 1))
+    pieces = body[top : top + found.shape[0], left : left + found.shape[1]].view(np.uint8)
+    apart = body.shape == tuple(side + 2 * FRAME for side in pieces.shape)
+    closed = None if found.open else closed_background(body, solid=True, apart=apart)
+    sizes, labels = np.array([found.pixels]), np.zeros(1, dtype=np.int64)
+    return SliceLook(pieces, sizes, labels, found.corner, found.outline, body, closed, framed)
 
 
 def framed_window(

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import make_lsq_spline
 
+from stackloft.compiled.smooth_curve import smooth_closed
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.simple_polygon import is_entangled
 from stackloft.geometry.uniform_spline import fit_uniform_all
@@ -150,7 +151,13 @@ def _all_smooth_closed(loops: Sequence[FloatArray], pixel: float) -> list[FloatA
 def _fitted_with(
     loops: Sequence[FloatArray], spacing: float, pixel: float, fewest: int = FEWEST
 ) -> list[FloatArray]:
-    return _all_fitted([_Wrapped.of(points, spacing * pixel, STEP * pixel, fewest) for points in loops])
+    """Return closed loops as splines with such knots, by the compiled kernel where it can."""
+    fitted = [smooth_closed(points, spacing * pixel, STEP * pixel, fewest) for points in loops]
+    rest = [points for points, smooth in zip(loops, fitted, strict=True) if smooth is None]
+    others = iter(
+        _all_fitted([_Wrapped.of(points, spacing * pixel, STEP * pixel, fewest) for points in rest])
+    )
+    return [next(others) if smooth is None else smooth for smooth in fitted]
 
 
 def _with_chosen_knots(points: FloatArray, usual: FloatArray, pixel: float) -> FloatArray:

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.smooth_curve import turns_somewhere
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.traced_corners import STEP, CornerRules, with_corners
@@ -60,14 +61,27 @@ def may_turn(loops: Sequence[Loop], pixels: Sequence[float], rules: CornerRules)
     >>> may_turn([Loop(disc), Loop(np.maximum(disc, -45.0))], [1.0, 1.0], CornerRules()).tolist()
     [False, True]
     """
+    near, far = _lines(rules)
+    shortest = 16 * rules.window  # others have shorter sides
+    least = float(np.cos(np.radians(rules.turn - _LESS)))
+    quick = [
+        turns_somewhere(loop.points, pixel, shortest, _WIDE, (near, far), least)
+        for loop, pixel in zip(loops, pixels, strict=True)
+    ]
+    if None not in quick:
+        return np.array(quick, dtype=np.bool_)
     turning = np.ones(len(loops), dtype=np.bool_)
     ways = [_way(loop.points, pixel) for loop, pixel in zip(loops, pixels, strict=True)]
     steps = [np.abs(np.diff(way)) for way in ways]
-    shortest = 16 * rules.window  # others have shorter sides
     usual = [k for k, own in enumerate(steps) if own.sum() >= shortest]
     if usual:
         turning[usual] = _turns([ways[k] for k in usual], [steps[k] for k in usual], rules)
     return turning
+
+
+def _lines(rules: CornerRules) -> tuple[int, int]:
+    """Return the first and last sample, counted from one, that the line ahead of it is fitted to."""
+    return round(rules.gap / _WIDE), round((rules.gap + rules.window) / _WIDE)
 
 
 def _way(points: FloatArray, pixel: float) -> ComplexArray:
@@ -80,7 +94,7 @@ def _way(points: FloatArray, pixel: float) -> ComplexArray:
 
 def _turns(ways: list[ComplexArray], steps: list[FloatArray], rules: CornerRules) -> BoolArray:
     """Return whether the lines behind and ahead of any sample of a loop differ in direction by a corner."""
-    near, far = round(rules.gap / _WIDE), round((rules.gap + rules.window) / _WIDE)
+    near, far = _lines(rules)
     apart = near + far  # the side behind a sample is the side ahead of the one so much earlier
     samples, counts = _resampled(ways, steps, apart, far)
     sides = _slopes(np.concatenate(samples), near, far)

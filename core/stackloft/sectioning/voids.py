@@ -17,6 +17,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.solid_piece import Cracks
+from stackloft.geometry.disc_reach import disc_reach
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.notices import Notice
 from stackloft.sectioning.linked_pieces import LinkedPieces
@@ -31,6 +33,8 @@ CRACK = 2
 _ENDLESS = 1e18  # pixels of the outer background, which is larger than any void
 _DISC = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * CRACK + 1, 2 * CRACK + 1))
 _FEWEST = 20  # pixels of a crack; fewer are the staircase of a slanting boundary
+CRACKS = Cracks(disc_reach(_DISC), _FEWEST, frame=2 * CRACK + 1)
+"""The same for a body of one piece without a hole."""
 
 
 def outer_background(body: BoolArray, *, crumbs: bool = True) -> BoolArray:

@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import cv2
 import numpy as np
 
 from stackloft.contracts.options import option
@@ -26,7 +25,8 @@ from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
-from stackloft_plugins.integrators.ring_levels import dilated, disc, eroded, innermost, ring_levels
+from stackloft_plugins.integrators.edge_zone import Beside, edge_zone
+from stackloft_plugins.integrators.ring_levels import innermost, ring_levels
 from stackloft_plugins.integrators.seen_slice import SeenSlice
 
 _NAN = float("nan")
@@ -128,7 +128,7 @@ class _CoverageSink:
         return Integral(volume, None, volume_bias=bias)
 
     def _seen(self, section: SectionField) -> SeenSlice:
-        return SeenSlice.of(section if self._segmentation.binary else cleaned(section, labels=False))
+        return SeenSlice(section if self._segmentation.binary else cleaned(section, labels=False))
 
     def _take(self, seen: SeenSlice | None) -> None:
         if self._current is not None and self._segmentation.binary:
@@ -182,28 +182,17 @@ def _check_edge(filled: FloatArray, pixels: FloatArray, volume: float) -> None:
         )
 
 
-def _sums(
-    current: SeenSlice, beside: tuple[SeenSlice | None, SeenSlice | None], zone: int, *, tells: bool
-) -> _SliceSums:
+def _sums(current: SeenSlice, beside: Beside, zone: int, *, tells: bool) -> _SliceSums:
     """Return what one slice adds, given its neighbours (itself, where they do not matter).
 
     The grey levels are NaN unless it `tells` them.
     """
-    own = current.mask(current.window)
-    others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
-    common, united = own & others[0] & others[1], own | others[0] | others[1]
-    inside, near = eroded(common, disc(zone)), dilated(united, disc(zone))
-    between = np.flatnonzero((inside ^ near).view(np.bool_))
-    edge = current.section.relative_at(between)
-    full = edge[common.ravel().take(between).view(np.bool_)]
-    body, background = ring_levels(current.section, inside, near) if tells else (_NAN, _NAN)
+    found = edge_zone(current, beside, zone, masks=tells)
+    body = background = near = _NAN
+    if tells and found.masks is not None:
+        inside, around, common = found.masks
+        body, background = ring_levels(current.section, inside, around)
+        near = innermost(current.section, common) if np.isnan(body) else body
     return _SliceSums(
-        inside=cv2.countNonZero(inside),
-        edge=len(edge),
-        grey=float(edge.sum()),
-        full=len(full),
-        full_grey=float(full.sum()),
-        body=body,
-        background=background,
-        near=innermost(current.section, common) if tells and np.isnan(body) else body,
+        found.inside, found.edge, found.grey, found.full, found.full_grey, body, background, near
     )

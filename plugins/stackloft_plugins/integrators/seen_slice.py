@@ -3,26 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.coverage import Shown
 from stackloft.model.segmentation import SectionField
 
 Mask = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SeenSlice:
     """A slice's field, where it lies, and where it is body."""
 
     section: SectionField
-    body: Mask
 
-    @staticmethod
-    def of(section: SectionField) -> SeenSlice:
-        """Return a section with its body's pixels."""
-        return SeenSlice(section, section.above().view(np.uint8))
+    @cached_property
+    def body(self) -> Mask:
+        """1 where the body is, on the section's crop."""
+        return self.section.above().view(np.uint8)
+
+    @property
+    def shown(self) -> Shown | None:
+        """The same for the compiled kernels, which need one level for all pixels."""
+        section = self.section
+        if section.local_levels is not None:
+            return None
+        return Shown(section.values, section.level, section.offset)
 
     def mask(self, window: tuple[int, int, int, int]) -> Mask:
         """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""
@@ -42,4 +51,5 @@ class SeenSlice:
     def window(self) -> tuple[int, int, int, int]:
         """Top, left, bottom, right."""
         row, column = self.section.offset
-        return row, column, row + self.body.shape[0], column + self.body.shape[1]
+        rows, columns = self.section.values.shape
+        return row, column, row + rows, column + columns

@@ -1,8 +1,4 @@
-/* Which sources this library was compiled from; building.py gives the number on the command line. */
+/* Which sources the library was compiled from: the number that compiled/building.py worked out of them. */
+#include "pixels.h"
 
-int stackloft_abi(void);
-
-int stackloft_abi(void)
-{
-    return STACKLOFT_ABI;
-}
+EXPORT int stackloft_abi(void) { return STACKLOFT_ABI; }

@@ -1,0 +1,85 @@
+/* Whether a traced loop may have a corner: straight lines fitted behind and ahead of samples along it, as
+ * sectioning/turning_loops.py does it for many loops at once. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "pixels.h"
+
+typedef struct {
+    double x, y;
+} place;
+
+/* Sample the way round a polygon evenly; `along` has one distance more than there are vertices. */
+static void resampled(const double *points, int64_t length, const double *along, double pixel, int64_t count,
+                      place *samples)
+{
+    double step = along[length] / (double)count;
+    int64_t k = 0;
+    for (int64_t j = 0; j < count; j++) {
+        double at = (double)j * step;
+        while (k + 1 < length && along[k + 1] <= at)
+            k++;
+        const double *here = points + 2 * k, *next = points + 2 * (k + 1 < length ? k + 1 : 0);
+        double reach = along[k + 1] - along[k], part = reach > 0.0 ? (at - along[k]) / reach : 0.0;
+        samples[j].x = (here[0] - points[0] + part * (next[0] - here[0])) / pixel;
+        samples[j].y = (here[1] - points[1] + part * (next[1] - here[1])) / pixel;
+    }
+}
+
+/* Return the slope, times a constant, of the line fitted to the samples `near` … `far` after one. */
+static place slope_after(const place *samples, int64_t count, int64_t from, int near, int far)
+{
+    place slope = {0.0, 0.0};
+    double middle = 0.5 * (near + far);
+    int64_t at = (from + near) % count;
+    for (int k = near; k <= far; k++) {
+        slope.x += (k - middle) * samples[at].x;
+        slope.y += (k - middle) * samples[at].y;
+        at = at + 1 < count ? at + 1 : 0;
+    }
+    return slope;
+}
+
+static int turns(const place *samples, int64_t count, int near, int far, double least_cosine, place *sides)
+{
+    for (int64_t k = 0; k < count; k++)
+        sides[k] = slope_after(samples, count, k, near, far);
+    int64_t apart = near + far;
+    for (int64_t k = 0; k < count; k++) {
+        place behind = sides[(k + count - apart) % count], ahead = sides[k];
+        double along = behind.x * ahead.x + behind.y * ahead.y, across = behind.x * ahead.y - behind.y * ahead.x;
+        if (along <= least_cosine * sqrt(along * along + across * across))
+            return 1;
+    }
+    return 0;
+}
+
+/* Return 1 when the loop may turn sharply somewhere, or is shorter than `shortest` pixels; 0 when it surely
+ * does not; -1 when memory is short. Samples lie `wide` pixels apart, lines are fitted to those `near` … `far`
+ * samples off. */
+EXPORT int stackloft_may_turn(const double *points, int64_t length, double pixel, double shortest, double wide,
+                              int near, int far, double least_cosine)
+{
+    double *along = malloc((size_t)(length + 1) * sizeof(double));
+    if (!along)
+        return -1;
+    along[0] = 0.0;
+    for (int64_t k = 0; k < length; k++) {
+        const double *here = points + 2 * k, *next = points + 2 * (k + 1 < length ? k + 1 : 0);
+        double x = (next[0] - here[0]) / pixel, y = (next[1] - here[1]) / pixel;
+        along[k + 1] = along[k] + sqrt(x * x + y * y);
+    }
+    int64_t count = llrint(along[length] / wide);
+    int answer = 1;
+    if (along[length] >= shortest && count > near + far) {
+        place *samples = malloc(2 * (size_t)count * sizeof(place));
+        answer = -1;
+        if (samples) {
+            resampled(points, length, along, pixel, count, samples);
+            answer = turns(samples, count, near, far, least_cosine, samples + count);
+        }
+        free(samples);
+    }
+    free(along);
+    return answer;
+}
