@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
+from stackloft.compiled.coverage import Rings
 from stackloft.compiled.library import kernels, without_kernels
 from stackloft.compiled.smooth_curve import smooth_closed
 from stackloft.compiled.solid_piece import solid_piece
@@ -138,16 +139,18 @@ def test_smoothed_loops_and_corners_are_the_same():
 
 
 @pytest.mark.parametrize("zone", [1, 2, 5])
-def test_edge_zones_hold_the_same_grey(zone):
+@pytest.mark.parametrize("rings", [Rings(4, 1), Rings(2, 2)])
+def test_edge_zones_and_rings_hold_the_same_grey(zone, rings):
     rng = np.random.default_rng(5)
-    for number in range(SLICES // 4):
+    for number in range(SLICES // 8):
         current, before, after = (_seen(rng) for _ in range(3))
         beside = (None if number % 5 == 0 else before, after)
-        found = edge_zone(current, beside, zone, masks=True)
+        found = edge_zone(current, beside, zone, rings)
         with without_kernels():
-            reference = edge_zone(current, beside, zone, masks=True)
+            reference = edge_zone(current, beside, zone, rings)
         assert (found.inside, found.edge, found.full) == (reference.inside, reference.edge, reference.full)
-        assert np.array_equal(found.masks, reference.masks)
+        for own, other in zip(found.rings, reference.rings, strict=True):
+            assert np.array_equal(own, other)
         scale = 1e-12 * 256.0 * max(found.edge, 1)
         assert abs(found.grey - reference.grey) <= scale
         assert abs(found.full_grey - reference.full_grey) <= scale
@@ -165,7 +168,7 @@ def test_levels_beyond_a_kind_of_numbers_leave_nothing_or_everything():
     full = SeenSlice(SectionField(grey, 8.0))
     for level in (-np.inf, -1e9, -0.5, 9.0, 1e9, np.inf, np.nan):
         own = SeenSlice(SectionField(grey, level))
-        found = edge_zone(own, (full, full), 2, masks=True)
+        found = edge_zone(own, (full, full), 2)
         with without_kernels():
-            reference = edge_zone(own, (full, full), 2, masks=True)
-        assert np.array_equal(found.masks, reference.masks)
+            reference = edge_zone(own, (full, full), 2)
+        assert (found.inside, found.edge, found.full) == (reference.inside, reference.edge, reference.full)

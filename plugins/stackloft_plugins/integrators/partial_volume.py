@@ -25,8 +25,8 @@ from stackloft.model.slice_stack import Picture, SectionKind
 from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
-from stackloft_plugins.integrators.edge_zone import Beside, edge_zone
-from stackloft_plugins.integrators.ring_levels import innermost, ring_levels
+from stackloft_plugins.integrators.edge_zone import Beside, edge_zone, innermost
+from stackloft_plugins.integrators.ring_levels import ring_levels, rings_of
 from stackloft_plugins.integrators.seen_slice import SeenSlice
 
 _NAN = float("nan")
@@ -187,12 +187,11 @@ def _sums(current: SeenSlice, beside: Beside, zone: int, *, tells: bool) -> _Sli
 
     The grey levels are NaN unless it `tells` them.
     """
-    found = edge_zone(current, beside, zone, masks=tells)
+    found = edge_zone(current, beside, zone, rings_of(current.section) if tells else None)
     body = background = near = _NAN
-    if tells and found.masks is not None:
-        inside, around, common = found.masks
-        body, background = ring_levels(current.section, inside, around)
-        near = innermost(current.section, common) if np.isnan(body) else body
+    if found.rings is not None:
+        body, background = ring_levels(*found.rings)
+        near = innermost(current, beside) if np.isnan(body) else body
     return _SliceSums(
         found.inside, found.edge, found.grey, found.full, found.full_grey, body, background, near
     )

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stackloft.compiled.coverage import Shown
 from stackloft.model.segmentation import SectionField
-
-Mask = NDArray[np.uint8]
+from stackloft_plugins.integrators.morphology import Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +23,13 @@ class SeenSlice:
         """1 where the body is, on the section's crop."""
         return self.section.above().view(np.uint8)
 
-    @property
+    @cached_property
     def shown(self) -> Shown | None:
         """The same for the compiled kernels, which need one level for all pixels."""
         section = self.section
         if section.local_levels is not None:
             return None
-        return Shown(section.values, section.level, section.offset)
+        return Shown.of(section.values, section.level, section.offset)
 
     def mask(self, window: tuple[int, int, int, int]) -> Mask:
         """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""

@@ -6,33 +6,43 @@
 #include "bits.h"
 
 typedef struct {
-    const pixels *picture; /* NULL: there is no such slice */
-    double level;
+    uint64_t *words; /* a mask's, as bits.h has them; NULL: there is no such slice */
+    int32_t rows, columns;
     int64_t down, right; /* from the current picture's first pixel to its own */
 } beside;
+
+enum { MOST_REACH = 16 };
+typedef struct {
+    double *values; /* room for `room` values of the ring inside, then as much for the one outside */
+    int64_t *counts;
+    int64_t room;
+    int32_t reach; /* pixels, of every `step`-th pixel alone */
+    int32_t step;
+} rings;
 
 /* Narrow `common` to what the slice beside shows too, and widen `united` by it. */
 static int take_beside(const beside *other, bits *common, bits *united)
 {
     int64_t words = (int64_t)common->rows * common->width;
-    if (!other->picture) {
+    if (!other->words) {
         memset(common->words, 0, (size_t)words * sizeof(uint64_t));
         return 1;
     }
-    bits shown = bits_above(other->picture, other->level), here = bits_new(common->rows, common->columns);
-    int done = shown.words && here.words;
-    if (done) {
+    bits shown = {other->words, other->rows, other->columns, (other->columns + 63) / 64};
+    bits here = bits_new(common->rows, common->columns);
+    if (here.words) {
         bits_placed(&shown, &here, (int)other->down, (int)other->right);
         for (int64_t k = 0; k < words; k++) {
             common->words[k] &= here.words[k];
             united->words[k] |= here.words[k];
         }
     }
-    free(shown.words), free(here.words);
+    int done = here.words != NULL;
+    free(here.words);
     return done;
 }
 
-static void sum_up(const pixels *picture, double level, const bits *common, const bits *inside, const bits *near,
+INLINE void sum_up(int kind, const pixels *picture, double level, const bits *common, const bits *inside, const bits *near,
                    double *sums)
 {
     double edge = 0.0, all = 0.0, full = 0.0, full_grey = 0.0;
@@ -42,7 +52,7 @@ static void sum_up(const pixels *picture, double level, const bits *common, cons
             uint64_t between = near->words[at] ^ inside->words[at], filled = common->words[at];
             for (; between; between &= between - 1) {
                 int bit = __builtin_ctzll(between);
-                double value = grey(picture, row, 64 * k + bit) - level;
+                double value = grey_as(kind, picture, row, 64 * k + bit) - level;
                 edge += 1.0, all += value;
                 if (filled >> bit & 1)
                     full += 1.0, full_grey += value;
@@ -52,58 +62,110 @@ static void sum_up(const pixels *picture, double level, const bits *common, cons
     sums[1] = edge, sums[2] = all, sums[3] = full, sums[4] = full_grey;
 }
 
-/* Spread 64 bits over as many bytes, the lowest into the first; four at a time by one multiplication. */
-static void spread_over(uint64_t word, uint8_t *to)
+/* Gather every other bit into the lower half. */
+static uint64_t every_other(uint64_t word)
 {
-    for (int k = 0; k < 64; k += 4) {
-        uint32_t four = (uint32_t)(word >> k & 15) * UINT32_C(0x00204081) & UINT32_C(0x01010101);
-        for (int byte = 0; byte < 4; byte++)
-            to[k + byte] = (uint8_t)(four >> (8 * byte));
-    }
+    static const uint64_t kept[] = {UINT64_C(0x5555555555555555), UINT64_C(0x3333333333333333),
+                                    UINT64_C(0x0f0f0f0f0f0f0f0f), UINT64_C(0x00ff00ff00ff00ff),
+                                    UINT64_C(0x0000ffff0000ffff), UINT64_C(0x00000000ffffffff)};
+    word &= kept[0];
+    for (int k = 1; k < 6; k++)
+        word = (word | word >> (1 << (k - 1))) & kept[k];
+    return word;
 }
 
-static void unpacked(const bits *mask, uint8_t *to)
+/* Return the mask, or every other pixel of every other row (`step` 2). */
+static bits every(const bits *mask, int step)
 {
-    uint8_t last[64];
-    for (int row = 0; row < mask->rows; row++, to += mask->columns) {
-        const uint64_t *words = bits_row(mask, row);
-        int whole = mask->columns / 64;
-        for (int k = 0; k < whole; k++)
-            spread_over(words[k], to + 64 * k);
-        if (whole < mask->width) {
-            spread_over(words[whole], last);
-            memcpy(to + 64 * whole, last, (size_t)(mask->columns - 64 * whole));
+    bits few = bits_new((mask->rows + step - 1) / step, (mask->columns + step - 1) / step);
+    for (int row = 0; few.words && row < few.rows; row++) {
+        const uint64_t *from = bits_row(mask, row * step);
+        uint64_t *to = bits_row(&few, row);
+        for (int k = 0; k < mask->width; k++) {
+            if (step == 1)
+                to[k] = from[k];
+            else
+                to[k / 2] |= every_other(from[k]) << (k & 1 ? 32 : 0);
         }
     }
+    return few;
+}
+
+/* Take the field where two masks differ; return how many values there are, or -1 when there is no room. */
+INLINE int64_t taken(int kind, const pixels *picture, double level, const bits *a, const bits *b, int step, double *values,
+                     int64_t room)
+{
+    int64_t count = 0;
+    for (int row = 0; row < a->rows; row++)
+        for (int k = 0; k < a->width; k++)
+            for (uint64_t left = bits_row(a, row)[k] ^ bits_row(b, row)[k]; left; left &= left - 1) {
+                if (count == room)
+                    return -1;
+                int column = 64 * k + __builtin_ctzll(left);
+                values[count++] = grey_as(kind, picture, row * step, column * step) - level;
+            }
+    return count;
+}
+
+/* Take the field in the rings on either side of the edge zone, `reach` pixels wide in squares. */
+static int take_rings(const pixels *picture, double level, const bits *inside, const bits *near, const rings *to)
+{
+    bits few[2] = {every(inside, to->step), every(near, to->step)}, other[2] = {{0}, {0}};
+    int done = few[0].words && few[1].words && to->reach < MOST_REACH && (to->step == 1 || to->step == 2);
+    if (done) {
+        int32_t square[MOST_REACH];
+        for (int k = 0; k <= to->reach; k++)
+            square[k] = to->reach;
+        done = bits_eroded(few, other, to->reach, square) && bits_dilated(few + 1, other + 1, to->reach, square);
+    }
+    for (int k = 0; done && k < 2; k++) {
+        double *values = to->values + k * to->room;
+        to->counts[k] = taken(picture->kind, picture, level, few + k, other + k, to->step, values, to->room);
+        done = to->counts[k] >= 0;
+    }
+    for (int k = 0; k < 2; k++)
+        free(few[k].words), free(other[k].words);
+    return done;
+}
+
+/* Write a picture's mask, rows · ⌈columns / 64⌉ words; 0 when memory is short. */
+EXPORT int stackloft_mask(const pixels *picture, double level, uint64_t *words)
+{
+    bits mask = bits_above(picture, level);
+    int done = mask.words != NULL;
+    if (done)
+        memcpy(words, mask.words, (size_t)mask.rows * (size_t)mask.width * sizeof(uint64_t));
+    free(mask.words);
+    return done;
 }
 
 /* Sum a slice up, given the slices before and after.
  *
+ * own     the picture's mask at its level
  * half    reach of each row of the disc by which the zone is wide, from the middle one outwards
  * sums    out: pixels inside, in the edge zone, the zone's field, its pixels that are at most full, their field
- * masks   out, or NULL: inside, inside with the zone, common to the three slices; a byte a pixel
+ * ring    what is wanted of the rings beside the zone; NULL: nothing
  *
- * Returns 0 when memory is short.
+ * Returns 0 when memory or room is short.
  */
-EXPORT int stackloft_coverage(const pixels *picture, double level, const beside *before, const beside *after,
-                              int radius, const int32_t *half, double *sums, uint8_t *masks)
+EXPORT int stackloft_coverage(const pixels *picture, double level, const uint64_t *own, const beside *before,
+                              const beside *after, int radius, const int32_t *half, double *sums,
+                              const rings *ring)
 {
-    bits common = bits_above(picture, level), united = bits_new(picture->rows, picture->columns);
+    bits common = bits_new(picture->rows, picture->columns), united = bits_new(picture->rows, picture->columns);
     bits inside = {0}, near = {0};
     int done = common.words && united.words;
     if (done) {
-        memcpy(united.words, common.words, (size_t)common.rows * (size_t)common.width * sizeof(uint64_t));
+        size_t size = (size_t)common.rows * (size_t)common.width * sizeof(uint64_t);
+        memcpy(common.words, own, size);
+        memcpy(united.words, own, size);
         done = take_beside(before, &common, &united) && take_beside(after, &common, &united) &&
                bits_eroded(&common, &inside, radius, half) && bits_dilated(&united, &near, radius, half);
     }
     if (done) {
-        sum_up(picture, level, &common, &inside, &near, sums);
-        int64_t size = (int64_t)common.rows * common.columns;
-        if (masks) {
-            unpacked(&inside, masks);
-            unpacked(&near, masks + size);
-            unpacked(&common, masks + 2 * size);
-        }
+#define SUM_UP(KIND) sum_up(KIND, picture, level, &common, &inside, &near, sums)
+        FOR_KIND(picture->kind, SUM_UP)
+        done = !ring || take_rings(picture, level, &inside, &near, ring);
     }
     free(common.words), free(united.words), free(inside.words), free(near.words);
     return done;

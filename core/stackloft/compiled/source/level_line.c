@@ -64,14 +64,14 @@ static int64_t crossings_of(const int32_t *chain, int64_t length, crossing *list
 
 /* Take the samples along an edge, and see whether the field changes faster along it than across: slopes of
  * the plane fitted to the 4 × 3 pixels around it. */
-static void look(crossing *one, const pixels *picture, double level)
+INLINE void look(int kind, crossing *one, const pixels *picture, double level)
 {
     double along[4], across[3] = {0.0, 0.0, 0.0};
     for (int step = 0; step < 4; step++) {
         double cell[3];
         for (int side = 0; side < 3; side++) {
             int row = one->row + (one->down ? step : side) - 1, column = one->column + (one->down ? side : step) - 1;
-            cell[side] = grey(picture, row, column);
+            cell[side] = grey_as(kind, picture, row, column);
             across[side] += cell[side];
         }
         along[step] = cell[0] + cell[1] + cell[2];
@@ -80,6 +80,12 @@ static void look(crossing *one, const pixels *picture, double level)
     double slope = fabs(3.0 * (along[3] - along[0]) + (along[2] - along[1]));
     one->across = 8.0 * slope >= 30 * DOMINANCE * fabs(across[2] - across[0]);
     one->fraction = one->sample[1] / (one->sample[1] - one->sample[2]);
+}
+
+INLINE void look_at_all(int kind, crossing *list, int64_t count, const pixels *picture, double level)
+{
+    for (int64_t k = 0; k < count; k++)
+        look(kind, list + k, picture, level);
 }
 
 static int is_clean(const crossing *one)
@@ -127,9 +133,10 @@ static int64_t placed(crossing *list, int64_t count, const pixels *picture, doub
 {
     double between = 0.0, whole = 0.0;
     int64_t across = 0;
+#define LOOK(KIND) look_at_all(KIND, list, count, picture, level)
+    FOR_KIND(picture->kind, LOOK)
     for (int64_t k = 0; k < count; k++) {
         crossing *one = list + k;
-        look(one, picture, level);
         one->across = one->across && count >= FEWEST;
         across += one->across;
         if (is_clean(one)) {

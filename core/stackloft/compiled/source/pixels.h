@@ -29,10 +29,12 @@ typedef struct {
     double empty, lift;
 } pixels;
 
-static inline double stored(const pixels *p, int row, int column)
+#define INLINE static inline __attribute__((always_inline))
+
+INLINE double stored_as(int kind, const pixels *p, int row, int column)
 {
     const char *at = p->first + row * p->stride;
-    switch (p->kind) {
+    switch (kind) {
     case INT16: return ((const int16_t *)at)[column];
     case UINT16: return ((const uint16_t *)at)[column];
     case UINT8: return ((const uint8_t *)at)[column];
@@ -44,10 +46,19 @@ static inline double stored(const pixels *p, int row, int column)
 }
 
 /* The grey level without what noise adds to empty pixels (geometry/noise_floor.py). */
-static inline double grey(const pixels *p, int row, int column)
+INLINE double grey_as(int kind, const pixels *p, int row, int column)
 {
-    double value = stored(p, row, column);
+    double value = stored_as(kind, p, row, column);
     return p->noisy && value < p->empty ? value - p->lift : value;
 }
+
+/* Do something with the kind of numbers known to the compiler, which then looks it up outside of all loops. */
+#define FOR_KIND(KIND, DO)                                                                           \
+    switch (KIND) {                                                                                  \
+    case INT16: DO(INT16); break;                                                                    \
+    case UINT8: DO(UINT8); break;                                                                    \
+    case FLOAT32: DO(FLOAT32); break;                                                                \
+    default: DO(KIND);                                                                               \
+    }
 
 #endif
