@@ -26,24 +26,32 @@ static void resampled(const double *points, int64_t length, const double *along,
     }
 }
 
-/* Return the slope, times a constant, of the line fitted to the samples `near` … `far` after one. */
-static place slope_after(const place *samples, int64_t count, int64_t from, int near, int far)
+/* Work out the slopes, times a constant, of the lines fitted to the samples `near` … `far` after each: sums of
+ * the samples and of their moments, of which one sample's differ from the last one's by the ends alone. */
+static void slopes(const place *samples, int64_t count, int near, int far, place *sides)
 {
-    place slope = {0.0, 0.0};
     double middle = 0.5 * (near + far);
-    int64_t at = (from + near) % count;
+    place sum = {0.0, 0.0}, moment = {0.0, 0.0};
     for (int k = near; k <= far; k++) {
-        slope.x += (k - middle) * samples[at].x;
-        slope.y += (k - middle) * samples[at].y;
-        at = at + 1 < count ? at + 1 : 0;
+        const place *one = samples + k % count;
+        sum.x += one->x, sum.y += one->y;
+        moment.x += (k - middle) * one->x, moment.y += (k - middle) * one->y;
     }
-    return slope;
+    int64_t first = near % count, next = (far + 1) % count;
+    for (int64_t k = 0; k < count; k++) {
+        sides[k] = moment;
+        const place *left = samples + first, *come = samples + next;
+        sum.x += come->x - left->x, sum.y += come->y - left->y;
+        moment.x += (far + 1 - middle) * come->x - (near - middle) * left->x - sum.x;
+        moment.y += (far + 1 - middle) * come->y - (near - middle) * left->y - sum.y;
+        first = first + 1 < count ? first + 1 : 0;
+        next = next + 1 < count ? next + 1 : 0;
+    }
 }
 
 static int turns(const place *samples, int64_t count, int near, int far, double least_cosine, place *sides)
 {
-    for (int64_t k = 0; k < count; k++)
-        sides[k] = slope_after(samples, count, k, near, far);
+    slopes(samples, count, near, far, sides);
     int64_t apart = near + far;
     for (int64_t k = 0; k < count; k++) {
         place behind = sides[(k + count - apart) % count], ahead = sides[k];
