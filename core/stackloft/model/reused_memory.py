@@ -16,10 +16,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-LARGE = 1_000_000
+LARGE = 250_000
 """Bytes: smaller arrays are left to the allocator."""
-_MOST = 3
-"""Pieces kept for the next ones to ask."""
+_FEW = 3
+"""Pieces kept for the next ones to ask, whatever their size."""
+_KEPT = 8_000_000
+"""Bytes up to which more of them are kept."""
 
 _lock = threading.RLock()  # the last view of an array may go while its own thread asks for another one
 _users = 0
@@ -36,7 +38,8 @@ class _Lent:
 
     def __del__(self) -> None:
         with _lock:
-            if _users and len(_free) < _MOST:
+            few = len(_free) < _FEW or sum(map(len, _free)) + len(self._memory) <= _KEPT
+            if _users and few:
                 _free.append(self._memory)
 
 

@@ -65,7 +65,7 @@ class SliceStack:
 
     decode: Callable[[int], Picture]
     """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads. It may
-    have an attribute ``luminance``, see there."""
+    have attributes ``luminance`` and ``at_hand``, see there."""
     names: tuple[str, ...]
     """(m) file name or slice label, for messages."""
     shape: tuple[int, int]
@@ -108,6 +108,15 @@ class SliceStack:
         """
         own: Callable[[int], Picture] = getattr(self.decode, "luminance", self.decode)
         return own
+
+    @property
+    def at_hand(self) -> bool:
+        """Whether the decoder says that a slice costs no more to decode again than to keep.
+
+        So it is with pixels that lie in a file as they are: memory that is taken for the first time costs as
+        much as reading them once more.
+        """
+        return bool(getattr(self.decode, "at_hand", False))
 
     def placed(self, index: int, points: FloatArray) -> FloatArray:
         """Return points of slice `index` where they lie in the stack's plane coordinates.

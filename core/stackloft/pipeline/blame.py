@@ -85,6 +85,11 @@ class _Answerable:
         own = getattr(self.decode, "luminance", None)
         return self if own is None else partial(self._checked, own)
 
+    @property
+    def at_hand(self) -> bool:
+        """As the decoder says."""
+        return bool(getattr(self.decode, "at_hand", False))
+
     def _checked(self, decode: Callable[[int], Any], index: int) -> Any:
         picture = blaming(self.loaded, decode, index, doing="decode")
         if not isinstance(picture, np.ndarray) or picture.shape[:2] != tuple(self.shape):

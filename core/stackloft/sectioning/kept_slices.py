@@ -84,6 +84,8 @@ def _widened(coarse: Picture) -> Picture:
 class KeptSlices:
     """A ``decode`` that answers from memory where it can.
 
+    Nothing is kept where the decoder has all slices at hand (`SliceStack.at_hand`).
+
     Examples
     --------
     >>> decoded = []
@@ -98,7 +100,7 @@ class KeptSlices:
 
     def __init__(self, decode: Callable[[int], Picture], budget: int = BUDGET) -> None:
         self._decode = decode
-        self._budget = budget
+        self._budget = 0 if getattr(decode, "at_hand", False) else budget
         self._shelf = _Shelf()
         self._kept: dict[int, _Kept] = {}
 
@@ -192,6 +194,11 @@ class Peeked:
         self._decode = decode
         self._budget = budget
         self._seen: dict[int, Picture] = {}
+
+    @property
+    def at_hand(self) -> bool:
+        """As the decoder says."""
+        return bool(getattr(self._decode, "at_hand", False))
 
     def peek(self, number: int) -> Picture:
         """Return the slice, and remember it for the next time it is asked for, within the budget."""

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
+from stackloft.model.reused_memory import memory_reused
 from stackloft.model.segmentation import Beyond, SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
 from stackloft.sectioning.ahead import ahead_on, worked_ahead
@@ -131,7 +132,7 @@ def _linked(segmentation: Segmentation) -> _Linked:
         picture = segmentation.stack.decode(index)
         return picture, look_at(segmentation, picture, segmentation.field_of(index, picture))
 
-    with without_opencv_threads():
+    with without_opencv_threads(), memory_reused():
         looks = worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
         for index, (picture, look) in enumerate(looks):
             window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)

@@ -13,7 +13,6 @@ Only the elements that place and scale the pixels are read; what is private stay
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -131,7 +130,7 @@ class DicomReader:
     ) -> SliceStack:
         folder = path if path.is_dir() else path.parent
         return SliceStack(
-            decode=_decoder(frames),
+            decode=_Decoder(frames),
             names=tuple(frame.name for frame in frames),
             shape=frames[0].shape,
             positions=placed.positions,
@@ -151,11 +150,17 @@ class DicomReader:
         )
 
 
-def _decoder(frames: Series) -> Callable[[int], Picture]:
-    def decode(number: int) -> Picture:
-        return decode_frame(frames[number])
+@dataclass(frozen=True, slots=True)
+class _Decoder:
+    frames: Series
 
-    return decode
+    def __call__(self, number: int) -> Picture:
+        return decode_frame(self.frames[number])
+
+    @property
+    def at_hand(self) -> bool:
+        """Whether all pixels lie in the files as they are."""
+        return all(frame.samples_at is not None for frame in self.frames)
 
 
 def _thickness(frames: Series) -> FloatArray | None:

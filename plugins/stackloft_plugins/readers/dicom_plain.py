@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.model.reused_memory import empty
 from stackloft_plugins.readers.dicom_sniff import first_bytes
 
 EXPLICIT_LITTLE = "1.2.840.10008.1.2.1"
@@ -55,15 +56,16 @@ class PlainSamples:
 
     def read(self, path: Path, shape: tuple[int, int]) -> NDArray[Any] | None:
         """Return the stored values, (rows, columns); None when the file is gone or too short."""
-        count = shape[0] * shape[1]
+        values = empty(shape, self.dtype)
         try:
-            values = np.fromfile(path, dtype=self.dtype, count=count, offset=self.at)
+            with path.open("rb", buffering=0) as stream:
+                stream.seek(self.at)
+                got = stream.readinto(values.reshape(-1).view(np.uint8).data)
         except OSError:
             return None
-        if len(values) != count:
+        if got != values.nbytes:
             return None
-        whole = values << self.spare >> self.spare if self.spare else values
-        return whole.reshape(shape)
+        return values << self.spare >> self.spare if self.spare else values
 
 
 @dataclass(frozen=True, slots=True)
