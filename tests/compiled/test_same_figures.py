@@ -22,6 +22,7 @@ from stackloft.sectioning.turning_loops import may_turn
 from stackloft.sectioning.voids import CRACKS
 from stackloft_plugins.integrators.edge_zone import edge_zone
 from stackloft_plugins.integrators.seen_slice import SeenSlice
+from stackloft_plugins.segmenters.slab_level import _DEEP, _slice_bands
 
 pytestmark = pytest.mark.skipif(kernels() is None, reason="no compiled kernels here")
 SLICES = 800
@@ -120,6 +121,20 @@ def test_traced_outlines_are_the_same_points():
         assert not reference.perhaps
         np.testing.assert_allclose(points, reference.loops[0].points, rtol=0.0, atol=1e-10)
     assert traced > SLICES // 3
+
+
+def test_bands_beside_the_boundary_hold_the_same_grey():
+    rng, seen = np.random.default_rng(6), 0
+    for _ in range(SLICES // 4):
+        grey, level = random_slice(rng)
+        found = _slice_bands(grey, level, 1.0, _DEEP)
+        with without_kernels():
+            reference = _slice_bands(grey, level, 1.0, _DEEP)
+        for own, other in zip(found, reference, strict=True):
+            assert own.dtype == other.dtype
+            assert np.array_equal(own, other)
+        seen += bool(found[0].size and found[1].size)
+    assert seen > SLICES // 16
 
 
 def test_smoothed_loops_and_corners_are_the_same():

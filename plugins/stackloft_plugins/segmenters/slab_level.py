@@ -22,6 +22,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.bands import bands
 from stackloft.geometry.median import median
 from stackloft.geometry.noise_floor import EMPTY, MEAN, MEDIAN, NoiseFloor, noise_floor
 from stackloft.model.arrays import BoolArray
@@ -166,7 +167,11 @@ def _slice_bands(
     if not mask.any() or mask.all():
         return grey[:0, 0], grey[:0, 0]
     window = _window(mask)
-    grey, mask = grey[window], np.ascontiguousarray(mask[window])
+    grey = grey[window]
+    quick = bands(grey, level, _DEEP) if sign > 0.0 and within == _DEEP else None
+    if quick is not None:
+        return quick
+    mask = np.ascontiguousarray(mask[window])
     inside, outside = _band(mask, within), _band(1 - mask, _DEEP)
     return grey[inside], grey[outside]
 

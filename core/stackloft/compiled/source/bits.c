@@ -159,7 +159,7 @@ int bits_dilated(const bits *mask, bits *out, int radius, const int32_t *half)
     return 1;
 }
 
-static void turn_over(bits *mask)
+void bits_turn_over(bits *mask)
 {
     uint64_t last = bits_last_word(mask);
     for (int row = 0; row < mask->rows; row++) {
@@ -176,11 +176,11 @@ int bits_eroded(const bits *mask, bits *out, int radius, const int32_t *half)
     if (!other.words)
         return 0;
     memcpy(other.words, mask->words, (size_t)mask->rows * (size_t)mask->width * sizeof(uint64_t));
-    turn_over(&other);
+    bits_turn_over(&other);
     int done = bits_dilated(&other, out, radius, half);
     free(other.words);
     if (done)
-        turn_over(out);
+        bits_turn_over(out);
     return done;
 }
 

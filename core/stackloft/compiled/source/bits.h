@@ -34,6 +34,9 @@ int64_t bits_count(const bits *mask);
 /* Mask out of: 1 of its last word's bits that are pixels. */
 uint64_t bits_last_word(const bits *mask);
 
+/* Make 1 of 0 and 0 of 1. */
+void bits_turn_over(bits *mask);
+
 /* out = mask dilated by a disc whose row `dy` off the middle reaches half[|dy|] pixels to either side. */
 int bits_dilated(const bits *mask, bits *out, int radius, const int32_t *half);
 
