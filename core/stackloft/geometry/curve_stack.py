@@ -30,8 +30,7 @@ _FIGURES = ("lengths", "starts", "centroids", "areas")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CurveStack:
-    """Closed piecewise-cubic curves, one per section; x and y by themselves, as pairs take several times as long.
-    """
+    """Closed piecewise-cubic curves, one per section; x and y apart, as rows of two take several times as long."""
 
     points: FloatArray
     """(2, n) mm: segment starts, section after section."""
@@ -80,12 +79,22 @@ class CurveStack:
         knot = self.knots.take(index)
         span = self.knots.take(index + 1) - knot
         x = (g - knot) / span
-        point, slope = np.empty((*x.shape, 2)), np.empty((*x.shape, 2))
+        planes = np.empty((2, 2, *x.shape))
         for k in (0, 1):
             ends = (each[k].take(index) for each in (self.points, self.ends, self.leaving, self.arriving))
-            point[..., k], along = along_cubics(*ends, x)
-            np.divide(along, span, out=slope[..., k])
+            planes[0, k], along = along_cubics(*ends, x)
+            np.divide(along, span, out=planes[1, k])
+        point, slope = np.moveaxis(planes, 1, -1)
         return point, slope
+
+    @property
+    def polygon_areas(self) -> FloatArray:
+        """(m,) mm²: of the polygons through the curves' points."""
+        origin = self.points[:, self.first[:-1]]
+        counts = np.diff(self.first)
+        x, y = (np.repeat(each, counts) for each in origin)
+        cross = (self.points[0] - x) * (self.ends[1] - y) - (self.points[1] - y) * (self.ends[0] - x)
+        return np.asarray(0.5 * np.add.reduceat(cross, self.first[:-1]))
 
     def flipped(self, flip: tuple[float, float]) -> CurveStack:
         """Return the curves with x and y multiplied by 1 or -1, counter-clockwise again.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.bezier_patch import bernstein, bernstein_slope
+from stackloft.geometry.bezier_patch import bernstein, bernstein_slope, patch_planes
 
 FloatArray = NDArray[np.float64]
 
@@ -48,30 +49,40 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
     area : float, mm²
     """
     rules, weights = _surface_rule(degree)
-    controls = patches.reshape(-1, 16, 3)
-    flux, length = np.zeros(len(weights)), np.zeros(len(weights))
-    for start in range(0, len(controls), AT_ONCE):
-        local = controls[start : start + AT_ONCE] - origin
-        planes = np.ascontiguousarray(local.transpose(1, 2, 0)).reshape(16, -1)
+    volume, area = 0.0, 0.0
+    for planes in _blocks(patches, origin):
         point, along, across = (rules @ planes).reshape(3, len(weights), 3, -1)
         normal = _cross(along, across)
-        flux += np.einsum("gdn,gdn->g", point, normal)
-        length += np.sqrt(np.einsum("gdn,gdn->gn", normal, normal)).sum(axis=1)
-    return float(weights @ flux) / 3.0, float(weights @ length)
+        area += float(weights @ _lengths(normal).sum(axis=1))
+        point *= normal
+        volume += float(weights @ point.sum(axis=(1, 2)))
+    return volume / 3.0, area
 
 
 def patch_areas(patches: FloatArray, degree: int = 9) -> FloatArray:
     """Return the area of each of (..., 4, 4, 3) patches, mm², as `volume_and_area` has their sum."""
     rules, weights = _surface_rule(degree)
     slopes = rules[len(weights) :]
-    controls = patches.reshape(-1, 16, 3)
-    areas = np.empty(len(controls))
-    for start in range(0, len(controls), AT_ONCE):
-        planes = np.ascontiguousarray(controls[start : start + AT_ONCE].transpose(1, 2, 0)).reshape(16, -1)
+    areas = []
+    for planes in _blocks(patches, np.zeros(3)):
         along, across = (slopes @ planes).reshape(2, len(weights), 3, -1)
-        normal = _cross(along, across)
-        areas[start : start + AT_ONCE] = weights @ np.sqrt(np.einsum("gdn,gdn->gn", normal, normal))
-    return areas.reshape(patches.shape[:-3])
+        areas.append(weights @ _lengths(_cross(along, across)))
+    lead = patches.shape[:-3]
+    return np.concatenate([np.zeros(0), *areas]).reshape(lead[::-1]).T
+
+
+def _blocks(patches: FloatArray, origin: FloatArray) -> Iterator[FloatArray]:
+    """Yield the control points of about `AT_ONCE` patches at a time, (16, 3 · patches), from the origin.
+
+    The patches come in the order of the leading axes turned over, as a skin has them in memory.
+    """
+    planes = patch_planes(patches)
+    planes = planes.reshape(16, 3, -1) if planes.ndim != 5 else planes.reshape(16, 3, *planes.shape[3:])
+    together = max(1, AT_ONCE // max(1, int(np.prod(planes.shape[3:]))))
+    centre = origin.reshape(3, *[1] * (planes.ndim - 2))
+    for start in range(0, planes.shape[2], together):
+        some = planes[:, :, start : start + together]
+        yield np.subtract(some, centre, out=np.empty(some.shape)).reshape(16, -1)
 
 
 @lru_cache
@@ -90,6 +101,12 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
         np.multiply(a[:, i], b[:, j], out=result[:, k])
         result[:, k] -= a[:, j] * b[:, i]
     return result
+
+
+def _lengths(vectors: FloatArray) -> FloatArray:
+    """Return the lengths of vectors over the middle axis."""
+    squared = np.einsum("gdn,gdn->gn", vectors, vectors)
+    return np.sqrt(squared, out=squared)
 
 
 def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:

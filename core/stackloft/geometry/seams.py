@@ -66,14 +66,17 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
     >>> solve_phases(stack, steps, [np.array([]), np.array([])]).phases.round(3)
     array([0.   , 0.125])
     """
-    steps, tied = _best_steps(_scores(points, tangents, corners))
-    phases = np.concatenate([[0.0], np.cumsum(steps)])
-    return SeamPhases(phases, np.flatnonzero(tied | _turns_unsure(tangents)))
-
-
-def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
-    """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
     shape = _correlation(_directions(tangents))
+    steps, tied = _best_steps(_scores(points, shape, corners))
+    phases = np.concatenate([[0.0], np.cumsum(steps)])
+    return SeamPhases(phases, np.flatnonzero(tied | _turns_unsure(shape)))
+
+
+def _scores(points: FloatArray, shape: ComplexArray, corners: list[FloatArray]) -> FloatArray:
+    """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples.
+
+    `shape` is the correlation of their tangents' directions.
+    """
     score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
@@ -81,8 +84,10 @@ def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray])
 
 
 def _as_complex(plane: FloatArray) -> ComplexArray:
-    """Return the plane's vectors as complex numbers; no copy where the pairs lie together."""
-    return np.ascontiguousarray(plane, dtype=np.float64).view(np.complex128)[..., 0]
+    """Return the plane's vectors as complex numbers."""
+    numbers = np.empty(plane.shape[:-1], dtype=np.complex128)
+    numbers.real, numbers.imag = plane[..., 0], plane[..., 1]
+    return numbers
 
 
 def _directions(tangents: FloatArray) -> ComplexArray:
@@ -90,14 +95,13 @@ def _directions(tangents: FloatArray) -> ComplexArray:
     return direction / np.abs(direction)
 
 
-def _turns_unsure(tangents: FloatArray) -> NDArray[np.bool_]:
+def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
     """Return for each pair whether the same shape may have turned left as well as right.
 
     The modulus of the tangents' correlation tells how alike two loops are whatever the turn between
     them, its phase tells the turn. A shape that matches unturned, or a round one that matches at any
     turn, leaves no doubt.
     """
-    match = _correlation(_directions(tangents))
     alike, turn = np.abs(match), np.angle(match)
     best = alike.max(axis=1, keepdims=True)
     peak = (
