@@ -102,11 +102,13 @@ def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
     them, its phase tells the turn. A shape that matches unturned, or a round one that matches at any
     turn, leaves no doubt.
     """
-    alike, turn = np.abs(match), np.angle(match)
+    alike = np.abs(match)
     best = alike.max(axis=1, keepdims=True)
     peak = (
         (alike >= np.roll(alike, 1, axis=1)) & (alike > np.roll(alike, -1, axis=1)) & (alike > ALIKE * best)
     )
+    turn = np.zeros_like(alike)
+    turn[peak] = np.angle(match[peak])
     left = np.where(peak & (turn > 0.0), turn, np.inf).min(axis=1)
     right = np.where(peak & (turn < 0.0), -turn, np.inf).min(axis=1)
     with np.errstate(invalid="ignore"):
