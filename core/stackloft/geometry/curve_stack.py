@@ -72,7 +72,8 @@ class CurveStack:
         derivative : (..., 2) array
             dP/ds, mm; its length is close to the perimeter.
         """
-        g = section + np.mod(s + self.starts[section], 1.0)
+        turns = s + self.starts[section]
+        g = turns - np.floor(turns) + section
         # rounding can carry g to the next section's first knot: hold it to its own section
         index = np.searchsorted(self.knots, g, side="right") - 1
         index = np.clip(index, self.first[section], self.first[section + 1] - 1)
