@@ -59,8 +59,8 @@ def evaluate(patches: FloatArray, along_v: FloatArray, along_u: FloatArray) -> F
     """
     planes = patch_planes(patches)
     lead = planes.shape[3:]
-    inner = np.matmul(along_u, planes.reshape(4, 4, -1))  # (4, b, 3 · patches)
-    outer = along_v @ inner.reshape(4, -1)
+    inner = along_v @ planes.reshape(4, -1)
+    outer = np.matmul(along_u, inner.reshape(len(along_v), 4, -1))  # (a, b, 3 · patches)
     found = outer.reshape(len(along_v), len(along_u), 3, *lead)
     return np.asarray(found.transpose(*range(len(lead) + 2, 2, -1), 0, 1, 2))
 

@@ -139,8 +139,7 @@ def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> Flo
     """Return current + step, shortened where points would pass each other or bunch."""
     for _ in range(12):
         trial = current + step
-        gap = np.roll(trial, -1, axis=1) - trial
-        gap[:, -1] += 1.0
+        gap = np.concatenate([trial[:, 1:], trial[:, :1] + 1.0], axis=1) - trial
         if (gap > 0.2 * spacing).all():
             return trial
         step = 0.5 * step

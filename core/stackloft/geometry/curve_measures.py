@@ -24,6 +24,8 @@ class CurveMeasures:
     """(m,) mm"""
     areas: FloatArray
     """(m,) mm²"""
+    polygon_areas: FloatArray
+    """(m,) mm²: of the polygons through the curves' points."""
     centroids: FloatArray
     """(m, 2) mm: area centroids."""
     starts: FloatArray
@@ -59,6 +61,8 @@ def curve_measures(
         moments[0] += cross * x
         moments[1] += cross * y
         points.append((t, x, y, weight * _length(along, up)))
+    cross = (p0[0] - begin[0]) * (p1[1] - begin[1]) - (p0[1] - begin[1]) * (p1[0] - begin[0])
+    straight = 0.5 * np.add.reduceat(cross, first[:-1])
     areas = 0.5 * np.add.reduceat(doubled, first[:-1])
     arms = np.add.reduceat(moments, first[:-1], axis=1) / (3.0 * areas)
     segment = sum(speed for *_, speed in points)
@@ -77,7 +81,7 @@ def curve_measures(
         coefficient[1] += speed * (y * cosine - x * sine)
     real, imaginary = np.add.reduceat(coefficient, first[:-1], axis=1)
     starts = -np.arctan2(imaginary, real) / (2.0 * np.pi)
-    return CurveMeasures(lengths, areas, (origin + arms).T, starts, fraction)
+    return CurveMeasures(lengths, areas, straight, (origin + arms).T, starts, fraction)
 
 
 def _length(x: FloatArray, y: FloatArray) -> FloatArray:

@@ -25,7 +25,7 @@ THREADS = 2
 """Threads that fit curves, where there are many."""
 AT_ONCE = 16_000
 """Vertices worked on at once, so that what is in between stays in the processor's cache."""
-_FIGURES = ("lengths", "starts", "centroids", "areas")
+_FIGURES = ("lengths", "starts", "centroids", "areas", "polygon_areas")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +52,8 @@ class CurveStack:
     """(m, 2) mm: area centroids."""
     areas: FloatArray
     """(m,) mm²"""
+    polygon_areas: FloatArray
+    """(m,) mm²: of the polygons through the curves' points."""
 
     def __len__(self) -> int:
         return len(self.lengths)
@@ -87,15 +89,6 @@ class CurveStack:
             np.divide(along, span, out=planes[1, k])
         point, slope = np.moveaxis(planes, 1, -1)
         return point, slope
-
-    @property
-    def polygon_areas(self) -> FloatArray:
-        """(m,) mm²: of the polygons through the curves' points."""
-        origin = self.points[:, self.first[:-1]]
-        counts = np.diff(self.first)
-        x, y = (np.repeat(each, counts) for each in origin)
-        cross = (self.points[0] - x) * (self.ends[1] - y) - (self.points[1] - y) * (self.ends[0] - x)
-        return np.asarray(0.5 * np.add.reduceat(cross, self.first[:-1]))
 
     def flipped(self, flip: tuple[float, float]) -> CurveStack:
         """Return the curves with x and y multiplied by 1 or -1, counter-clockwise again.

@@ -77,7 +77,7 @@ def _scores(points: FloatArray, shape: ComplexArray, corners: list[FloatArray]) 
 
     `shape` is the correlation of their tangents' directions.
     """
-    score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
+    score = _correlation(_as_complex(points)).real + shape.real + _squared(shape)
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
     return np.asarray(score)
@@ -91,8 +91,8 @@ def _as_complex(plane: FloatArray) -> ComplexArray:
 
 
 def _directions(tangents: FloatArray) -> ComplexArray:
-    direction: ComplexArray = _as_complex(tangents)
-    return direction / np.abs(direction)
+    length = np.sqrt(tangents[..., 0] ** 2 + tangents[..., 1] ** 2)
+    return _as_complex(tangents / length[..., None])
 
 
 def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
@@ -102,7 +102,7 @@ def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
     them, its phase tells the turn. A shape that matches unturned, or a round one that matches at any
     turn, leaves no doubt.
     """
-    alike = np.abs(match)
+    alike = np.sqrt(_squared(match))
     best = alike.max(axis=1, keepdims=True)
     peak = (
         (alike >= np.roll(alike, 1, axis=1)) & (alike > np.roll(alike, -1, axis=1)) & (alike > ALIKE * best)
@@ -119,9 +119,14 @@ def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
 
 def _correlation(signal: ComplexArray) -> ComplexArray:
     """Return the normalised circular correlation of each row with the next, at every shift."""
-    norm = np.sqrt((np.abs(signal) ** 2).sum(axis=1))
+    norm = np.sqrt(_squared(signal).sum(axis=1))
     spectrum = np.fft.fft(signal, axis=1) / np.where(norm > 0, norm, 1.0)[:, None]
     return np.asarray(np.fft.ifft(np.conj(spectrum[:-1]) * spectrum[1:], axis=1))
+
+
+def _squared(numbers: ComplexArray) -> FloatArray:
+    """Return |z|²; NumPy's |z| takes care of numbers that are not met here, and several times as long."""
+    return np.asarray(numbers.real**2 + numbers.imag**2)
 
 
 def _corner_signal(corners: list[FloatArray], samples: int) -> ComplexArray:
