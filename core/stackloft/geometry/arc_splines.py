@@ -69,9 +69,7 @@ def spline_tangents(nodes: FloatArray, points: FloatArray, starts: IntArray) -> 
         bands[0, ends], right[:, ends] = 1.0, tangents
     bands[1, stops - 1] = 0.0
     return np.asarray(
-        solveh_banded(
-            bands, right.T, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False
-        )
+        solveh_banded(bands, right.T, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
     )
 
 

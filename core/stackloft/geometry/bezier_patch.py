@@ -66,7 +66,7 @@ def evaluate(patches: FloatArray, along_v: FloatArray, along_u: FloatArray) -> F
 
 
 def patch_planes(patches: FloatArray) -> FloatArray:
-    """Return (..., 4, 4, 3) patches as (4, 4, 3, ...), the leading axes turned over, as a skin has them in memory.
+    """Return (..., 4, 4, 3) patches as (4, 4, 3, ...), leading axes turned over: as a skin lies in memory.
 
     Examples
     --------

@@ -47,7 +47,9 @@ def curve_measures(
         First segment of each curve; the fewest decide the rule, see `MANY`.
     """
     counts = np.diff(first)
-    nodes, weights = (0.5 * each for each in np.polynomial.legendre.leggauss(2 if counts.min() >= MANY else 4))
+    nodes, weights = (
+        0.5 * each for each in np.polynomial.legendre.leggauss(2 if counts.min() >= MANY else 4)
+    )
     origin = p0[:, first[:-1]]
     begin = [np.repeat(each, counts) for each in origin]
     doubled, moments = np.zeros_like(p0[0]), np.zeros_like(p0)
@@ -75,10 +77,9 @@ def curve_measures(
     segment *= share
     for t, x, y, speed in points:
         cosine, sine = cosine_and_sine(fraction + t * segment)
-        x -= centre[0]
-        y -= centre[1]
-        coefficient[0] += speed * (x * cosine + y * sine)
-        coefficient[1] += speed * (y * cosine - x * sine)
+        right, up = x - centre[0], y - centre[1]
+        coefficient[0] += speed * (right * cosine + up * sine)
+        coefficient[1] += speed * (up * cosine - right * sine)
     real, imaginary = np.add.reduceat(coefficient, first[:-1], axis=1)
     starts = -np.arctan2(imaginary, real) / (2.0 * np.pi)
     return CurveMeasures(lengths, areas, straight, (origin + arms).T, starts, fraction)
@@ -89,7 +90,7 @@ def _length(x: FloatArray, y: FloatArray) -> FloatArray:
     x *= x
     y *= y
     x += y
-    return np.sqrt(x, out=x)
+    return np.asarray(np.sqrt(x, out=x))
 
 
 def along_cubics(

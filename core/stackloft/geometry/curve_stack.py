@@ -30,7 +30,7 @@ _FIGURES = ("lengths", "starts", "centroids", "areas", "polygon_areas")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CurveStack:
-    """Closed piecewise-cubic curves, one per section; x and y apart, as rows of two take several times as long."""
+    """Closed piecewise-cubic curves, one per section; x and y apart: rows of two take longer."""
 
     points: FloatArray
     """(2, n) mm: segment starts, section after section."""
@@ -84,8 +84,10 @@ class CurveStack:
         x = (g - knot) / span
         planes = np.empty((2, 2, *x.shape))
         for k in (0, 1):
-            ends = (each[k].take(index) for each in (self.points, self.ends, self.leaving, self.arriving))
-            planes[0, k], along = along_cubics(*ends, x)
+            p0, p1, d0, d1 = (
+                each[k].take(index) for each in (self.points, self.ends, self.leaving, self.arriving)
+            )
+            planes[0, k], along = along_cubics(p0, p1, d0, d1, x)
             np.divide(along, span, out=planes[1, k])
         point, slope = np.moveaxis(planes, 1, -1)
         return point, slope

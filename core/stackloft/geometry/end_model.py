@@ -24,9 +24,6 @@ SHAPES = (2.0 / 3.0, 4.0 / 3.0)
 PARABOLA = 3
 BLUNT = 0.5
 """Length of the bluntest cap of a limb, in lengths of a round one."""
-TOUCHING = 1e-9
-"""Part of its terms by which a parabola's discriminant may be negative from rounding: a cone's areas touch zero
-where its sides meet, and whether they close must not hang on the last bit."""
 FARTHEST = 1e6
 """Times the depth of the sections looked at beyond which nothing closes."""
 
@@ -70,9 +67,9 @@ def _positive_roots(c: float, b: float, a: float) -> list[float]:
     if abs(c) * a <= 1e-14 * b * b:
         return [-a / b] if b < 0 else []
     discriminant = b * b - 4.0 * a * c
-    if discriminant < -TOUCHING * b * b:
+    if discriminant < 0.0:
         return []
-    half = -0.5 * (b + math.copysign(math.sqrt(max(discriminant, 0.0)), b))
+    half = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
     return [t for t in (half / c, a / half if half else 0.0) if t > 0.0]
 
 

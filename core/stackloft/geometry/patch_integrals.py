@@ -110,7 +110,7 @@ def _lengths(vectors: FloatArray) -> FloatArray:
     x, y, z = vectors
     x += y
     x += z
-    return np.sqrt(x, out=x)
+    return np.asarray(np.sqrt(x, out=x))
 
 
 def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:

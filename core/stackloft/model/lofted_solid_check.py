@@ -86,7 +86,7 @@ def _check_shell(shell: Shell, name: str) -> None:
 
 
 def _size(patches: FloatArray) -> float:
-    """Return the longest side of the box around all control points, mm; not finite where one of them is not."""
+    """Return the longest side of the box around all control points, mm; not finite where they are not."""
     planes = patch_planes(patches)
     ends = planes.max(axis=(0, 1, 3, 4)) - planes.min(axis=(0, 1, 3, 4))
     return float(ends.max())  # NumPy's largest of anything and nan is nan

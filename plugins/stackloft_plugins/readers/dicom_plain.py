@@ -36,6 +36,7 @@ _LONG = frozenset({b"OB", b"OD", b"OF", b"OL", b"OV", b"OW", b"SQ", b"SV", b"UC"
 _SHORT = frozenset(
     b"AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US".split()
 )  # value types whose length takes two bytes
+_TYPES = _SHORT | _LONG
 _NUMBERS = {b"US": "H", b"SS": "h", b"UL": "I", b"SL": "i", b"FD": "d", b"FL": "f"}
 _TEXTS = frozenset({b"CS", b"UI", b"DS", b"IS", b"LO", b"SH"})
 _UNDEFINED = 0xFFFFFFFF
@@ -112,40 +113,42 @@ def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
         The file cannot be opened.
     """
     head = first_bytes(path, _USUAL)
-    header = _header(head, keywords)
-    return _header(first_bytes(path, _HEADER), keywords) if header is None and len(head) == _USUAL else header
+    found = _header(head, _tags(keywords))
+    if found is None and len(head) == _USUAL:
+        found = _header(first_bytes(path, _HEADER), _tags(keywords))
+    return found
 
 
-def _header(head: bytes, keywords: tuple[str, ...]) -> PlainHeader | None:
+def _header(head: bytes, wanted: dict[int, str]) -> PlainHeader | None:
     """Return the wanted elements of a file that begins so, or None when it is not plain, or runs on."""
     if head[128:132] != b"DICM":
         return None
-    wanted = _tags(keywords)
     values: dict[str, Any] = {}
     at, last = 132, 0
     try:
-        while True:
+        while last != _PIXELS:
             group, element, kind, length = _ELEMENT(head, at)
             tag = group << 16 | element
-            if kind in _SHORT:
-                start = at + 8
-            elif kind in _LONG:
+            start = at + 8
+            if kind in _LONG:
                 start, length = at + 12, _LENGTH(head, at + 8)[0]
-            else:
-                return None
-            if not last < tag <= _PIXELS or length == _UNDEFINED:
-                return None
-            if tag == _PIXELS:
-                return PlainHeader(values, start, length) if kind in _SAMPLES else None
-            at, last = start + length, tag
-            if at > len(head):
-                return None
+            at = start + length
+            _check_element(tag, kind, length, last, at <= len(head))
+            last = tag
             if tag in wanted:
                 values[wanted[tag]] = _value(kind, head[start:at])
             elif tag == _SYNTAX and _value(kind, head[start:at]) != EXPLICIT_LITTLE:
                 return None
     except (struct.error, ValueError):
         return None
+    return PlainHeader(values, start, length)
+
+
+def _check_element(tag: int, kind: bytes, length: int, last: int, whole: bool) -> None:
+    """Raise ValueError for an element that is not plain."""
+    plain = whole and kind in _TYPES if tag != _PIXELS else kind in _SAMPLES
+    if not (plain and last < tag <= _PIXELS) or length == _UNDEFINED:
+        raise ValueError(tag)
 
 
 @lru_cache(maxsize=4096)
