@@ -5,7 +5,7 @@ import pytest
 
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
-from stackloft.sectioning.corner_columns import follow_corners, place_at, share_points
+from stackloft.sectioning.corner_columns import follow_corners, places_of, share_points
 from stackloft.sectioning.equal_points import equal_points
 from stackloft.sectioning.smoothing import smooth_loop
 
@@ -92,7 +92,7 @@ def test_short_chains_that_would_meet_elsewhere_are_dropped():
         corners = [np.sort(rng.uniform(0, 1, rng.integers(0, 5))) for _ in range(12)]
         chains = follow_corners(corners, 33)
         for section in range(12):
-            places = np.array([place_at(chain, section) for chain in chains])
+            places = np.array([float(places_of(chain, section)) for chain in chains])
             gaps = np.mod(np.roll(places, -1) - places, 1.0)
             assert len(chains) < 2 or (gaps.min() > 0.3 / 33 and gaps.sum() == pytest.approx(1.0))
 

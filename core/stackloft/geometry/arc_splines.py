@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
+from scipy.linalg import solveh_banded
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -49,26 +49,27 @@ def spline_tangents(nodes: FloatArray, points: FloatArray, starts: IntArray) -> 
     >>> spline_tangents(t, (t**3)[:, None], np.array([0]))[:, 0].round(12)
     array([0.  , 0.12, 0.48, 1.08, 1.92, 3.  ])
     """
-    n = len(nodes)
-    stops = np.append(starts[1:], n)
+    stops = np.append(starts[1:], len(nodes))
     planes = np.ascontiguousarray(points.T)  # rows of two take several times as long as two rows
-    step = np.diff(nodes)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slope = np.diff(planes, axis=1) / step
-    bands = np.zeros((3, n))
-    rhs = np.empty_like(planes)
-    before, after = step[:-1], step[1:]
-    bands[0, 2:] = before
-    bands[1, 1:-1] = 2.0 * (before + after)
-    bands[2, :-2] = after
-    rhs[:, 1:-1] = 3.0 * (after * slope[:, :-1] + before * slope[:, 1:])
-    for ends, towards_inside in ((starts, 1), (stops - 1, -1)):
-        bands[1, ends] = 1.0
-        bands[2, ends[ends > 0] - 1] = 0.0
-        bands[0, ends[ends + 1 < n] + 1] = 0.0
-        rhs[:, ends] = _end_tangents(nodes, points, starts, stops, towards_inside).T
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # between arcs
+        steep = 1.0 / np.diff(nodes)
+        rise = np.diff(planes)
+        rise *= 3.0 * steep * steep
+    # each row divided by both its steps, so that the system is symmetric; what is known at the ends put in
+    bands, right = np.empty((2, len(nodes))), np.empty_like(planes)
+    np.add(steep[:-1], steep[1:], out=bands[0, 1:-1])
+    bands[0] *= 2.0
+    bands[1, :-1] = steep
+    np.add(rise[:, :-1], rise[:, 1:], out=right[:, 1:-1])
+    known = [_end_tangents(nodes, points, starts, stops, inwards).T for inwards in (1, -1)]
+    for ends, inside, gap, tangents in ((starts, 1, 0, known[0]), (stops - 1, -1, -1, known[1])):
+        right[:, ends + inside] -= steep[ends + gap] * tangents
+        bands[1, ends + gap] = 0.0
+    for ends, tangents in zip((starts, stops - 1), known, strict=True):
+        bands[0, ends], right[:, ends] = 1.0, tangents
+    bands[1, stops - 1] = 0.0
     return np.asarray(
-        solve_banded((1, 1), bands, rhs.T, overwrite_ab=True, overwrite_b=True, check_finite=False)
+        solveh_banded(bands, right.T, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
     )
 
 
@@ -104,12 +105,12 @@ def end_derivative_weights(t: FloatArray) -> FloatArray:
     >>> end_derivative_weights(np.array([[0.0, 1.0, 2.0]]))
     array([[-1.5,  2. , -0.5]])
     """
-    a, k = t.shape
-    weights = np.zeros((a, k))
+    k = t.shape[1]
+    weights = np.zeros(t.shape)
     for j in range(1, k):
-        others = [i for i in range(1, k) if i != j]
-        numerator = np.prod(t[:, [0]] - t[:, others], axis=1) if others else np.ones(a)
-        denominator = np.prod(t[:, [j]] - t[:, [0, *others]], axis=1)
-        weights[:, j] = numerator / denominator
+        weights[:, j] = 1.0 / (t[:, j] - t[:, 0])
+        for i in range(1, k):
+            if i != j:
+                weights[:, j] *= (t[:, 0] - t[:, i]) / (t[:, j] - t[:, i])
     weights[:, 0] = -weights[:, 1:].sum(axis=1)
     return weights

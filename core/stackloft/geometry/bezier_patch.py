@@ -57,8 +57,21 @@ def evaluate(patches: FloatArray, along_v: FloatArray, along_u: FloatArray) -> F
     -------
     (..., a, b, 3) array
     """
-    inner = np.matmul(along_u, patches)  # (..., 4, b, 3)
-    lead = inner.shape[:-3]
-    b = len(along_u)
-    flat = np.matmul(along_v, inner.reshape(*lead, 4, b * 3))
-    return np.asarray(flat.reshape(*lead, len(along_v), b, 3))
+    planes = patch_planes(patches)
+    lead = planes.shape[3:]
+    inner = along_v @ planes.reshape(4, -1)
+    outer = np.matmul(along_u, inner.reshape(len(along_v), 4, -1))  # (a, b, 3 · patches)
+    found = outer.reshape(len(along_v), len(along_u), 3, *lead)
+    return np.asarray(found.transpose(*range(len(lead) + 2, 2, -1), 0, 1, 2))
+
+
+def patch_planes(patches: FloatArray) -> FloatArray:
+    """Return (..., 4, 4, 3) patches as (4, 4, 3, ...), leading axes turned over: as a skin lies in memory.
+
+    Examples
+    --------
+    >>> patch_planes(np.zeros((7, 5, 4, 4, 3))).shape
+    (4, 4, 3, 5, 7)
+    """
+    lead = patches.ndim - 3
+    return patches.transpose(lead, lead + 1, lead + 2, *range(lead - 1, -1, -1))

@@ -79,7 +79,18 @@ def _weights(z: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _gaps(s: FloatArray) -> FloatArray:
     """Return s[j + 1] - s[j] round the loop, (m, N)."""
-    return np.mod(np.roll(s, -1, axis=1) - s, 1.0)
+    return np.mod(np.concatenate([s[:, 1:], s[:, :1]], axis=1) - s, 1.0)
+
+
+def _before(s: FloatArray) -> FloatArray:
+    """Return s[j - 1] round the loop, (m, N)."""
+    return np.concatenate([s[:, -1:], s[:, :-1]], axis=1)
+
+
+def _dots(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the scalar products of vectors, (m, N) of (m, N, 2)."""
+    product: FloatArray = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
+    return product
 
 
 def _newton_step(
@@ -95,32 +106,28 @@ def _newton_step(
     """Return the Gauss-Newton step of E for all points, (m, N)."""
     m, n = current.shape
     bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
-    diagonal = np.zeros((m, n))
-    gradient = np.zeros((m, n))
+    pair = weight_pair[:, None]
+    # evenness: residual gap / spacing - 1; a pull to the first guess
+    share = weight_own[:, None] / spacing**2
+    stiff = EVENNESS * share
+    stretch = stiff * (_gaps(current) - spacing)
+    diagonal = stiff + _before(stiff) + HOLD * share
+    gradient = _before(stretch) - stretch + HOLD * share * (current - first)
     # columns: residual Q[i+1] - Q[i]
     rise = point[1:] - point[:-1]
-    pair = weight_pair[:, None]
-    diagonal[1:] += pair * (slope[1:] ** 2).sum(-1)
-    diagonal[:-1] += pair * (slope[:-1] ** 2).sum(-1)
-    gradient[1:] += pair * (rise * slope[1:]).sum(-1)
-    gradient[:-1] -= pair * (rise * slope[:-1]).sum(-1)
+    squared = _dots(slope, slope)
+    diagonal[1:] += pair * squared[1:]
+    diagonal[:-1] += pair * squared[:-1]
+    gradient[1:] += pair * _dots(rise, slope[1:])
+    gradient[:-1] -= pair * _dots(rise, slope[:-1])
     across = np.zeros((m, n))
-    across[:-1] = -pair * (slope[1:] * slope[:-1]).sum(-1)
-    # evenness: residual gap / spacing - 1
-    stiff = EVENNESS * weight_own[:, None] / spacing**2
-    stretch = stiff * (_gaps(current) - spacing)
-    gradient += np.roll(stretch, 1, axis=1) - stretch
-    diagonal += stiff + np.roll(stiff, 1, axis=1)
-    along = -stiff
-    hold = HOLD * weight_own[:, None] / spacing**2
-    diagonal += hold
-    gradient += hold * (current - first)
+    across[:-1] = -pair * _dots(slope[1:], slope[:-1])
     diagonal[fixed] += 1e12 * diagonal.max()
     gradient[fixed] = 0.0
     bands[0] = diagonal.ravel()
-    closing = np.zeros((2, m, n))
-    closing[0, :, :-1], closing[1, :, 0] = along[:, :-1], along[:, -1]
-    bands[1], bands[n - 1] = closing.reshape(2, -1)
+    along = np.zeros((2, m, n))
+    along[0, :, :-1], along[1, :, 0] = -stiff[:, :-1], -stiff[:, -1]
+    bands[1], bands[n - 1] = along.reshape(2, -1)
     bands[n] = across.ravel()
     solved = solveh_banded(
         bands, gradient.ravel(), overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
@@ -132,8 +139,7 @@ def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> Flo
     """Return current + step, shortened where points would pass each other or bunch."""
     for _ in range(12):
         trial = current + step
-        gap = np.roll(trial, -1, axis=1) - trial
-        gap[:, -1] += 1.0
+        gap = np.concatenate([trial[:, 1:], trial[:, :1] + 1.0], axis=1) - trial
         if (gap > 0.2 * spacing).all():
             return trial
         step = 0.5 * step

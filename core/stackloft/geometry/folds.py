@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.bezier_patch import bernstein, evaluate
+from stackloft.geometry.bezier_patch import bernstein, evaluate, patch_planes
 from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.simple_polygon import crosses_itself
 
@@ -47,10 +47,10 @@ def folded_rows(patches: FloatArray) -> BoolArray:
     sections = half.reshape(len(patches), -1, 2)
     crossing = crosses_itself(sections)
     crossing[crossing] = [_largest_lobe(polygon) > SLIP for polygon in sections[crossing]]
-    z = np.einsum("av,rcv->rca", _ACROSS, patches[:, :, :, 0, 2])
-    rise = np.diff(z, axis=-1)
-    length = np.abs(z[..., -1:] - z[..., :1])
-    back = (rise < -1e-6 * np.maximum(length, 1e-300)).any(axis=(1, 2))
+    z = np.tensordot(_ACROSS, patch_planes(patches)[:, 0, 2], 1)  # (9, columns, rows)
+    rise = np.diff(z, axis=0)
+    length = np.abs(z[-1] - z[0])
+    back = (rise < -1e-6 * np.maximum(length, 1e-300)).any(axis=(0, 1))
     return np.asarray(crossing | back)
 
 

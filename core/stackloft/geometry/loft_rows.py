@@ -44,25 +44,26 @@ def closed_rows(points: FloatArray, corners: BoolArray, ends: tuple[RowEnd, RowE
     """
     first, first_tangent = _end_row(points, ends[0])
     last, last_tangent = _end_row(points[::-1], ends[1])
-    stack = [*first, *points, *last]
-    marks = [*corners[:1].repeat(len(first), 0), *corners, *corners[-1:].repeat(len(last), 0)]
     tangents = (first_tangent, None if last_tangent is None else -last_tangent)
-    rows = np.array(stack)
-    return Rows(rows, np.array(marks), find_creases(rows), tangents)
+    begin, stop = len(first), len(first) + len(points)
+    rows = np.empty((3, points.shape[1], stop + len(last))).T  # as the skin wants it
+    rows[:begin], rows[begin:stop], rows[stop:] = first, points, last
+    marks = np.concatenate([corners[:1].repeat(begin, 0), corners, corners[-1:].repeat(len(last), 0)])
+    return Rows(rows, marks, find_creases(rows), tangents)
 
 
-def _end_row(points: FloatArray, end: RowEnd) -> tuple[list[FloatArray], FloatArray | None]:
+def _end_row(points: FloatArray, end: RowEnd) -> tuple[FloatArray, FloatArray | None]:
     """Return the row to add before points[0] (or none) and the tangent there, pointing inwards."""
     if end.length == 0.0:
-        return [], None
+        return np.empty((0, *points.shape[1:])), None
     depth = np.abs(points[:, 0, 2] - points[0, 0, 2])
     outward = -1.0 if len(points) < 2 or points[1, 0, 2] > points[0, 0, 2] else 1.0
     z = points[0, 0, 2] + outward * end.length
     if not end.pole:
-        return [_extrapolated_rim(points, depth, end.length, z)], None
+        return _extrapolated_rim(points, depth, end.length, z)[None], None
     pole = np.append(_extrapolate(points[:, :, :2].mean(axis=1), depth, end.length, order=2), z)
-    row = np.broadcast_to(pole, points[0].shape)
-    return [row], _radial_tangent(points[0]) if end.smooth else None
+    row = np.broadcast_to(pole, (1, *points[0].shape))
+    return row, _radial_tangent(points[0]) if end.smooth else None
 
 
 def _radial_tangent(section: FloatArray) -> FloatArray:

@@ -53,34 +53,44 @@ def central_moment_ratios(
     [0.502, 0.0, 0.0]
     """
     corner = loops[0].mean(axis=0)
-    areas, sums = _loop_moments(loops, corner, [(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    areas, arms = _areas_and_arms(loops, corner)
     mass = areas * weights
-    centre = corner + (sums[1:] * weights).sum(axis=1) / mass.sum()
+    centre = corner + (arms * weights).sum(axis=1) / mass.sum()
     height = z - float((mass * z).sum() / mass.sum())
-    _, spread = _loop_moments(loops, centre, [(2, 0, 0), (0, 2, 0)])
-    radius = np.sqrt((spread.sum(axis=0) * weights).sum() / mass.sum())
+    moments = _loop_moments(loops, centre, [(2, 0, 0), (0, 2, 0), *powers])
+    radius = np.sqrt((moments[:2].sum(axis=0) * weights).sum() / mass.sum())
     tall = np.sqrt((mass * height**2).sum() / mass.sum()) or 1.0
-    _, wanted = _loop_moments(loops, centre, powers)
     orders = np.array(powers)
     along = np.power(height[None, :], orders[:, 2:])
     size = mass.sum() * radius ** orders[:, :2].sum(axis=1) * tall ** orders[:, 2]
-    return np.asarray((wanted * along * weights).sum(axis=1) / size)
+    return np.asarray((moments[2:] * along * weights).sum(axis=1) / size)
 
 
-def _loop_moments(
-    loops: list[FloatArray], centre: FloatArray, powers: list[Powers]
-) -> tuple[FloatArray, FloatArray]:
-    """Return each loop's area, (n,), and its moments about a centre, (len(powers), n), by Green's theorem."""
-    orders = np.array(powers)
-    found = np.empty((1 + len(powers), len(loops)))
+def _areas_and_arms(loops: list[FloatArray], corner: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return each loop's area, (n,), and its first moments in x and y about a point, (2, n)."""
+    found = np.empty((3, len(loops)))
     for k, loop in enumerate(loops):
-        start = loop.T - centre[:, None]
+        x, y = loop.T - corner[:, None]
+        cross = x[:-1] * y[1:] - x[1:] * y[:-1]
+        last = x[-1] * y[0] - x[0] * y[-1]
+        found[0, k] = 0.5 * (cross.sum() + last)
+        for each, value in ((x, 1), (y, 2)):
+            found[value, k] = (cross @ (each[:-1] + each[1:]) + last * (each[-1] + each[0])) / 6.0
+    return np.abs(found[0]), np.sign(found[0]) * found[1:]
+
+
+def _loop_moments(loops: list[FloatArray], centre: FloatArray, powers: list[Powers]) -> FloatArray:
+    """Return each loop's moments about a centre, (len(powers), n), by Green's theorem, its area positive."""
+    orders = np.array(powers)
+    found = np.empty((len(powers), len(loops)))
+    for k, loop in enumerate(loops):
+        start = np.ascontiguousarray(loop.T) - centre[:, None]
         rise = np.concatenate([start[:, 1:], start[:, :1]], axis=1) - start
         x, y = (start[:, None] + _GAUSS_T[:, None] * rise[:, None]).reshape(2, -1)
         across, up = _powers(x, int(orders[:, 0].max()) + 1), _powers(y, int(orders[:, 1].max()))
         every = across @ ((_GAUSS_W[:, None] * rise[1]).ravel() * up).T  # of every x^p y^q at once
-        found[0, k], found[1:, k] = every[1, 0], every[orders[:, 0] + 1, orders[:, 1]] / (orders[:, 0] + 1)
-    return np.abs(found[0]), np.sign(found[0]) * found[1:]
+        found[:, k] = np.sign(every[1, 0]) * every[orders[:, 0] + 1, orders[:, 1]] / (orders[:, 0] + 1)
+    return found
 
 
 def _powers(x: FloatArray, highest: int) -> FloatArray:

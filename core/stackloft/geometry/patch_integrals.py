@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.bezier_patch import bernstein, bernstein_slope
+from stackloft.geometry.bezier_patch import bernstein, bernstein_slope, patch_planes
 
 FloatArray = NDArray[np.float64]
 
@@ -48,30 +49,40 @@ def volume_and_area(patches: FloatArray, origin: FloatArray, degree: int = 9) ->
     area : float, mm²
     """
     rules, weights = _surface_rule(degree)
-    controls = patches.reshape(-1, 16, 3)
-    flux, length = np.zeros(len(weights)), np.zeros(len(weights))
-    for start in range(0, len(controls), AT_ONCE):
-        local = controls[start : start + AT_ONCE] - origin
-        planes = np.ascontiguousarray(local.transpose(1, 2, 0)).reshape(16, -1)
-        point, along, across = (rules @ planes).reshape(3, len(weights), 3, -1)
-        normal = _cross(along, across)
-        flux += np.einsum("gdn,gdn->g", point, normal)
-        length += np.sqrt(np.einsum("gdn,gdn->gn", normal, normal)).sum(axis=1)
-    return float(weights @ flux) / 3.0, float(weights @ length)
+    count = len(weights)
+    volume, area = 0.0, 0.0
+    for planes in _blocks(patches, origin):
+        values = rules @ planes
+        normal = _cross(values[:, count : 2 * count], values[:, 2 * count :])
+        volume += float(weights @ np.einsum("dgn,dgn->g", values[:, :count], normal))
+        area += float((weights @ _lengths(normal)).sum())
+    return volume / 3.0, area
 
 
 def patch_areas(patches: FloatArray, degree: int = 9) -> FloatArray:
     """Return the area of each of (..., 4, 4, 3) patches, mm², as `volume_and_area` has their sum."""
     rules, weights = _surface_rule(degree)
-    slopes = rules[len(weights) :]
-    controls = patches.reshape(-1, 16, 3)
-    areas = np.empty(len(controls))
-    for start in range(0, len(controls), AT_ONCE):
-        planes = np.ascontiguousarray(controls[start : start + AT_ONCE].transpose(1, 2, 0)).reshape(16, -1)
-        along, across = (slopes @ planes).reshape(2, len(weights), 3, -1)
-        normal = _cross(along, across)
-        areas[start : start + AT_ONCE] = weights @ np.sqrt(np.einsum("gdn,gdn->gn", normal, normal))
-    return areas.reshape(patches.shape[:-3])
+    count = len(weights)
+    areas = []
+    for planes in _blocks(patches, np.zeros(3)):
+        slopes = rules[count:] @ planes
+        areas.append(weights @ _lengths(_cross(slopes[:, :count], slopes[:, count:])))
+    return np.concatenate([np.zeros(0), *areas]).reshape(patches.shape[-4::-1]).T
+
+
+def _blocks(patches: FloatArray, origin: FloatArray) -> Iterator[FloatArray]:
+    """Yield the control points of about `AT_ONCE` patches at a time, (3, 16, patches), from the origin.
+
+    The patches come in the order of the leading axes turned over, as a skin has them in memory.
+    """
+    planes = np.moveaxis(patch_planes(patches), 2, 0)
+    planes = planes.reshape(3, 16, *planes.shape[3:])
+    if planes.ndim != 4:
+        planes = planes.reshape(3, 16, -1, 1)
+    together = max(1, AT_ONCE // max(1, planes.shape[3]))
+    for start in range(0, planes.shape[2], together):
+        some = planes[:, :, start : start + together]
+        yield np.subtract(some, origin[:, None, None, None], out=np.empty(some.shape)).reshape(3, 16, -1)
 
 
 @lru_cache
@@ -84,12 +95,22 @@ def _surface_rule(degree: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return a × b over the middle axis."""
-    result = np.empty_like(a)
+    """Return a × b over the first axis."""
+    result, back = np.empty(a.shape), np.empty(a.shape[1:])
     for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.multiply(a[:, i], b[:, j], out=result[:, k])
-        result[:, k] -= a[:, j] * b[:, i]
+        np.multiply(a[i], b[j], out=result[k])
+        np.multiply(a[j], b[i], out=back)
+        result[k] -= back
     return result
+
+
+def _lengths(vectors: FloatArray) -> FloatArray:
+    """Return the lengths of vectors over the first axis; they are lost."""
+    vectors *= vectors
+    x, y, z = vectors
+    x += y
+    x += z
+    return np.asarray(np.sqrt(x, out=x))
 
 
 def plane_face(rim: FloatArray, origin: FloatArray) -> tuple[float, float]:

@@ -8,12 +8,12 @@ splines with variable knots).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 TURNING = 0.5
 """Share of the points that goes by turning; the rest goes by arc length."""
@@ -28,25 +28,28 @@ class Spread:
     shares: FloatArray
     """(m, K + 1) t at s = k/K, from 0 to 1."""
 
-    def share(self, section: int, s: FloatArray) -> FloatArray:
-        """Return t at s; both run on beyond one turn."""
+    def share(self, section: int | IntArray, s: FloatArray) -> FloatArray:
+        """Return t at s of the sections, (…) broadcastable; both run on beyond one turn."""
         whole = np.floor(s)
-        return np.asarray(whole + np.interp(s - whole, self._grid(), self.shares[section]))
+        rest = s - whole
+        steps = self.shares.shape[1] - 1
+        k = np.minimum((rest * steps).astype(np.int64), steps - 1)
+        begin = self.shares[section, k]
+        rise = (self.shares[section, k + 1] - begin) * steps
+        return np.asarray(whole + (begin + rise * (rest - k / steps)))
 
-    def fraction(self, section: int, t: FloatArray) -> FloatArray:
-        """Return s at t; both run on beyond one turn."""
+    def fraction(self, section: int | IntArray, t: FloatArray) -> FloatArray:
+        """Return s at t of the sections, (…) broadcastable; both run on beyond one turn."""
         whole = np.floor(t)
-        return np.asarray(whole + np.interp(t - whole, self.shares[section], self._grid()))
-
-    def _grid(self) -> FloatArray:
-        return _even(self.shares.shape[1])
-
-
-@lru_cache
-def _even(count: int) -> FloatArray:
-    grid = np.linspace(0.0, 1.0, count)
-    grid.setflags(write=False)
-    return grid
+        rest = t - whole
+        steps = self.shares.shape[1] - 1
+        apart = 2.0 * np.arange(len(self.shares))  # all sections' shares in one increasing row
+        row = (self.shares + apart[:, None]).ravel()
+        k = np.searchsorted(row, rest + apart[section], side="right") - 1
+        k = np.clip(k - np.asarray(section) * (steps + 1), 0, steps - 1)
+        begin = self.shares[section, k]
+        rise = 1.0 / (steps * (self.shares[section, k + 1] - begin))
+        return np.asarray(whole + (k / steps + rise * (rest - begin)))
 
 
 def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread:
@@ -68,7 +71,7 @@ def spread_by_turning(tangents: FloatArray, corners: list[FloatArray]) -> Spread
     True
     """
     count = tangents.shape[1]
-    heading = np.ascontiguousarray(tangents, dtype=np.float64).view(np.complex128)[..., 0]
+    heading = tangents[..., 0] + 1j * tangents[..., 1]
     turn = np.abs(np.angle(np.roll(heading, -1, axis=1) / heading))
     if any(len(marks) for marks in corners):
         turn = turn * np.stack([_away(marks, count) for marks in corners])

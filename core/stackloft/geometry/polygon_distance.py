@@ -17,6 +17,9 @@ from scipy.spatial import cKDTree
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+AT_ONCE = 100_000
+"""Pairs of a row and a side looked at together."""
+
 
 def signed_distance(x: FloatArray, y: FloatArray, polygons: list[FloatArray]) -> FloatArray:
     """Return the distance of grid nodes to the nearest side, mm, negative outside.
@@ -85,16 +88,21 @@ def inside_grid(x: FloatArray, y: FloatArray, start: FloatArray, end: FloatArray
     Parameters
     ----------
     x, y : (columns,) and (rows,) arrays
+        x increasing.
     start, end : (n, 2) arrays
         The sides.
     """
-    inside = np.zeros((len(y), len(x)), dtype=bool)
-    for row, height in enumerate(y):
-        across = (start[:, 1] > height) != (end[:, 1] > height)
-        a, b = start[across], end[across]
-        at = a[:, 0] + (height - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-        inside[row] = np.searchsorted(np.sort(at), x) % 2 == 1
-    return inside
+    parts = [np.zeros((0, len(x)), dtype=bool)]
+    together = max(1, AT_ONCE // max(1, len(start)))
+    for first in range(0, len(y), together):
+        height = y[first : first + together, None]
+        row, side = np.nonzero((start[:, 1] > height) != (end[:, 1] > height))
+        a, b = start[side], end[side]
+        at = a[:, 0] + (height[row, 0] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+        begin = row * (len(x) + 1) + np.searchsorted(x, at, side="right")
+        begun = np.bincount(begin, minlength=len(height) * (len(x) + 1)).reshape(len(height), -1)
+        parts.append(np.cumsum(begun[:, :-1], axis=1) % 2 == 1)
+    return np.concatenate(parts)
 
 
 def _to_side(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:

@@ -66,43 +66,49 @@ def solve_phases(points: FloatArray, tangents: FloatArray, corners: list[FloatAr
     >>> solve_phases(stack, steps, [np.array([]), np.array([])]).phases.round(3)
     array([0.   , 0.125])
     """
-    steps, tied = _best_steps(_scores(points, tangents, corners))
-    phases = np.concatenate([[0.0], np.cumsum(steps)])
-    return SeamPhases(phases, np.flatnonzero(tied | _turns_unsure(tangents)))
-
-
-def _scores(points: FloatArray, tangents: FloatArray, corners: list[FloatArray]) -> FloatArray:
-    """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples."""
     shape = _correlation(_directions(tangents))
-    score = _correlation(_as_complex(points)).real + shape.real + np.abs(shape) ** 2
+    steps, tied = _best_steps(_scores(points, shape, corners))
+    phases = np.concatenate([[0.0], np.cumsum(steps)])
+    return SeamPhases(phases, np.flatnonzero(tied | _turns_unsure(shape)))
+
+
+def _scores(points: FloatArray, shape: ComplexArray, corners: list[FloatArray]) -> FloatArray:
+    """Return (m - 1, K) scores of shifting section i + 1 against section i by k samples.
+
+    `shape` is the correlation of their tangents' directions.
+    """
+    score = _correlation(_as_complex(points)).real + shape.real + _squared(shape)
     if any(len(c) for c in corners):
         score += _correlation(_corner_signal(corners, points.shape[1])).real
     return np.asarray(score)
 
 
 def _as_complex(plane: FloatArray) -> ComplexArray:
-    """Return the plane's vectors as complex numbers; no copy where the pairs lie together."""
-    return np.ascontiguousarray(plane, dtype=np.float64).view(np.complex128)[..., 0]
+    """Return the plane's vectors as complex numbers."""
+    numbers = np.empty(plane.shape[:-1], dtype=np.complex128)
+    numbers.real, numbers.imag = plane[..., 0], plane[..., 1]
+    return numbers
 
 
 def _directions(tangents: FloatArray) -> ComplexArray:
-    direction: ComplexArray = _as_complex(tangents)
-    return direction / np.abs(direction)
+    length = np.sqrt(tangents[..., 0] ** 2 + tangents[..., 1] ** 2)
+    return _as_complex(tangents / length[..., None])
 
 
-def _turns_unsure(tangents: FloatArray) -> NDArray[np.bool_]:
+def _turns_unsure(match: ComplexArray) -> NDArray[np.bool_]:
     """Return for each pair whether the same shape may have turned left as well as right.
 
     The modulus of the tangents' correlation tells how alike two loops are whatever the turn between
     them, its phase tells the turn. A shape that matches unturned, or a round one that matches at any
     turn, leaves no doubt.
     """
-    match = _correlation(_directions(tangents))
-    alike, turn = np.abs(match), np.angle(match)
+    alike = np.sqrt(_squared(match))
     best = alike.max(axis=1, keepdims=True)
     peak = (
         (alike >= np.roll(alike, 1, axis=1)) & (alike > np.roll(alike, -1, axis=1)) & (alike > ALIKE * best)
     )
+    turn = np.zeros_like(alike)
+    turn[peak] = np.angle(match[peak])
     left = np.where(peak & (turn > 0.0), turn, np.inf).min(axis=1)
     right = np.where(peak & (turn < 0.0), -turn, np.inf).min(axis=1)
     with np.errstate(invalid="ignore"):
@@ -113,9 +119,14 @@ def _turns_unsure(tangents: FloatArray) -> NDArray[np.bool_]:
 
 def _correlation(signal: ComplexArray) -> ComplexArray:
     """Return the normalised circular correlation of each row with the next, at every shift."""
-    norm = np.sqrt((np.abs(signal) ** 2).sum(axis=1))
+    norm = np.sqrt(_squared(signal).sum(axis=1))
     spectrum = np.fft.fft(signal, axis=1) / np.where(norm > 0, norm, 1.0)[:, None]
     return np.asarray(np.fft.ifft(np.conj(spectrum[:-1]) * spectrum[1:], axis=1))
+
+
+def _squared(numbers: ComplexArray) -> FloatArray:
+    """Return |z|²; NumPy's |z| takes care of numbers that are not met here, and several times as long."""
+    return np.asarray(numbers.real**2 + numbers.imag**2)
 
 
 def _corner_signal(corners: list[FloatArray], samples: int) -> ComplexArray:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.bezier_patch import HERMITE_TO_BEZIER, bernstein_slope
+from stackloft.geometry.bezier_patch import bernstein_slope
 from stackloft.geometry.cubic_operators import broken_periodic_tangents, tangents_across
 
 FloatArray = NDArray[np.float64]
@@ -49,7 +49,7 @@ def skin(rows: Rows) -> FloatArray:
     Returns
     -------
     (n - 1, N, 4, 4, 3) array
-        Control points [row, column, v, u], mm.
+        Control points [row, column, v, u], mm. They lie in memory as (4, 4, 3, N, n - 1).
 
     Examples
     --------
@@ -62,11 +62,10 @@ def skin(rows: Rows) -> FloatArray:
     """
     curves = section_beziers(rows.points, rows.corners)
     ends = [
-        np.zeros_like(curves[0]) if tangent is None else section_beziers(tangent[None], corners[None])[0]
+        None if tangent is None else section_beziers(tangent[None], corners[None])[0]
         for tangent, corners in zip(rows.tangents, (rows.corners[0], rows.corners[-1]), strict=True)
     ]
-    nodes = arc_length_nodes(rows)
-    return _across(curves, ends, nodes, rows)
+    return _across(curves, (ends[0], ends[1]), arc_length_nodes(rows), rows.creases)
 
 
 def section_beziers(points: FloatArray, corners: BoolArray) -> FloatArray:
@@ -74,52 +73,78 @@ def section_beziers(points: FloatArray, corners: BoolArray) -> FloatArray:
 
     Every row has the same, even parameter steps, so that the skin is one tensor product.
     """
+    planes = _planes(points)
     if not corners.any():
-        return _closed_beziers(points, corners[0])
-    result = np.empty((*points.shape[:2], 4, points.shape[2]))
+        return _rows(_closed_beziers(planes, corners[0]))
+    result = np.empty((4, *planes.shape))
     patterns, which = np.unique(corners, axis=0, return_inverse=True)
     for k, pattern in enumerate(patterns):
         chosen = np.flatnonzero(which.ravel() == k)
-        result[chosen] = _closed_beziers(points[chosen], pattern)
-    return result
+        result[..., chosen] = _closed_beziers(np.ascontiguousarray(planes[..., chosen]), pattern)
+    return _rows(result)
 
 
-def _closed_beziers(points: FloatArray, breaks: BoolArray) -> FloatArray:
-    """Return the Bézier segments of rows that are broken at the same points."""
-    arriving, leaving = broken_periodic_tangents(np.ones(points.shape[1]), breaks)
-    hermite = np.empty((*points.shape[:2], 4, points.shape[2]))
-    hermite[:, :, 0], hermite[:, :, 2] = points, leaving @ points
-    incoming = hermite[:, :, 2] if arriving is leaving else arriving @ points
-    hermite[:, :-1, 1], hermite[:, -1, 1] = points[:, 1:], points[:, 0]
-    hermite[:, :-1, 3], hermite[:, -1, 3] = incoming[:, 1:], incoming[:, 0]
-    return np.asarray(np.matmul(HERMITE_TO_BEZIER, hermite))
+def _planes(data: FloatArray) -> FloatArray:
+    """Return (n, N, ...) data as (..., N, n), along each column from row to row: long rows add up fastest."""
+    return np.ascontiguousarray(np.moveaxis(data, (1, 0), (-2, -1)))
+
+
+def _rows(planes: FloatArray) -> FloatArray:
+    """Return (..., N, n) data as (n, N, ...), where they lie."""
+    return np.moveaxis(planes, (-1, -2), (0, 1))
+
+
+def _closed_beziers(planes: FloatArray, breaks: BoolArray) -> FloatArray:
+    """Return the Bézier segments, (4, d, N, n), of rows (d, N, n) that are broken at the same points."""
+    arriving, leaving = broken_periodic_tangents(np.ones(planes.shape[1]), breaks)
+    out = leaving @ planes
+    into = out if arriving is leaving else arriving @ planes
+    beziers = np.empty((4, *planes.shape))
+    beziers[0] = planes
+    beziers[3, :, :-1], beziers[3, :, -1] = planes[:, 1:], planes[:, 0]
+    np.multiply(out, 1.0 / 3.0, out=beziers[1])
+    beziers[1] += planes
+    beziers[2, :, :-1], beziers[2, :, -1] = into[:, 1:], into[:, 0]
+    beziers[2] *= -1.0 / 3.0
+    beziers[2] += beziers[3]
+    return beziers
 
 
 def arc_length_nodes(rows: Rows) -> FloatArray:
     """Return the rows' parameters: arc length along the columns, averaged over the loop, mm."""
-    step = np.linalg.norm(np.diff(rows.points, axis=0), axis=2).mean(axis=1)
+    planes = _planes(rows.points)
+    step = _lengths(np.diff(planes)).mean(axis=0)
     step = np.maximum(step, 1e-12 * step.sum())
     for _ in range(REFINEMENTS):
         nodes = np.concatenate([[0.0], np.cumsum(step)])
-        columns = _across(rows.points, [_or_zero(t, rows) for t in rows.tangents], nodes, rows)
-        velocity = np.matmul(_SLOPES, columns)
-        speed = np.sqrt((velocity**2).sum(axis=-1))
-        step = (speed @ _WEIGHTS).mean(axis=1)
+        columns = np.moveaxis(_across(rows.points, rows.tangents, nodes, rows.creases), (2, 3, 1), (0, 1, 2))
+        step = np.zeros(len(nodes) - 1)
+        for slope, weight in zip(_SLOPES, _WEIGHTS, strict=True):
+            step += weight * _lengths(np.tensordot(slope, columns, 1)).mean(axis=0)
     return np.concatenate([[0.0], np.cumsum(step)])
 
 
-def _or_zero(tangent: FloatArray | None, rows: Rows) -> FloatArray:
-    return np.zeros_like(rows.points[0]) if tangent is None else tangent
+def _lengths(planes: FloatArray) -> FloatArray:
+    """Return the lengths of vectors, (N, n) of (3, N, n)."""
+    return np.asarray(np.sqrt((planes * planes).sum(axis=0)))
 
 
-def _across(data: FloatArray, ends: list[FloatArray], nodes: FloatArray, rows: Rows) -> FloatArray:
-    """Return Bézier points across rows, (n - 1, N, 4, ...), of data (n, N, ...) at the nodes."""
-    n = len(nodes)
-    values = data.reshape(n, -1)
-    slopes = [end.ravel() if t is not None else None for end, t in zip(ends, rows.tangents, strict=True)]
-    arriving, leaving = tangents_across(nodes, rows.creases, values, (slopes[0], slopes[1]))
-    step = np.diff(nodes)[:, None]
-    out, into = leaving[:-1] * step, arriving[1:] * step
-    hermite = np.stack([values[:-1], values[1:], out, into], axis=1)  # (n - 1, 4, N...)
-    bezier = np.matmul(HERMITE_TO_BEZIER, hermite).reshape(n - 1, 4, *data.shape[1:])
-    return np.moveaxis(bezier, 1, 2)
+def _across(
+    data: FloatArray, ends: tuple[FloatArray | None, FloatArray | None], nodes: FloatArray, creases: BoolArray
+) -> FloatArray:
+    """Return Bézier points across rows, (n - 1, N, 4, ...), of data (n, N, ...) at the nodes.
+
+    `ends` are the tangents, (N, ...), at the first and the last row, None where they are free.
+    """
+    planes = _planes(data)
+    first, last = (None if end is None else np.moveaxis(end, 0, -1).ravel() for end in ends)
+    values = planes.reshape(-1, len(nodes))
+    arriving, leaving = tangents_across(nodes, creases, values.T, (first, last))
+    third = np.diff(nodes) / 3.0
+    beziers = np.empty((4, len(values), len(third)))
+    beziers[0], beziers[3] = values[:, :-1], values[:, 1:]
+    np.multiply(leaving[:-1].T, third, out=beziers[1])
+    beziers[1] += beziers[0]
+    np.multiply(arriving[1:].T, -third, out=beziers[2])
+    beziers[2] += beziers[3]
+    return _rows(beziers.reshape(4, *planes.shape[:-1], len(third)))

@@ -54,30 +54,31 @@ def areas_beyond(patches: FloatArray) -> tuple[FloatArray, float]:
     """
     areas = patch_areas(patches, degree=4).sum(axis=1)
     rims = evaluate(patches, _RIMS, _ROUND)  # (rows, columns, 3, 4, 3)
-    loops = np.moveaxis(rims, 2, 1).reshape(len(patches), 3, -1, 3)
+    loops = rims.transpose(4, 2, 1, 3, 0).reshape(3, 3, -1, len(patches))
     return areas - _needed(loops, areas), float(areas.sum())
 
 
 def _needed(loops: FloatArray, areas: FloatArray) -> FloatArray:
     """Return what there is to go over from the first to the last of three loops each, (rows,) mm².
 
-    The loops' difference is counted only where an area, (rows,), needs it.
+    Of (3, 3, k, rows) loops: coordinate, loop, vertex. Their difference is counted only where an area,
+    (rows,), needs it.
     """
-    plane = loops[..., :2] - loops[:, :, :1, :2]  # (rows, 3, k, 2), each loop from its own first point
-    steps = np.roll(plane, -1, axis=2) - plane
-    lengths = np.hypot(steps[..., 0], steps[..., 1]).sum(axis=2) @ np.array([1.0, 4.0, 1.0]) / 6.0
-    sizes = np.abs(0.5 * (plane[..., 0] * steps[..., 1] - plane[..., 1] * steps[..., 0]).sum(axis=2))
-    out = np.abs(np.diff(sizes)).sum(axis=1)
-    gaps = loops[:, 2, 0, 2] - loops[:, 0, 0, 2]
+    x, y = loops[:2] - loops[:2, :, :1]  # each loop from its own first point
+    across, up = (np.concatenate([each[:, 1:], each[:, :1]], axis=1) - each for each in (x, y))
+    lengths = np.array([1.0, 4.0, 1.0]) / 6.0 @ np.sqrt(across * across + up * up).sum(axis=1)
+    sizes = np.abs(0.5 * (x * up - y * across).sum(axis=1))  # (3, rows)
+    out = np.abs(np.diff(sizes, axis=0)).sum(axis=0)
+    gaps = loops[2, 2, 0] - loops[2, 0, 0]
     needed = areas.copy()
     for k in np.flatnonzero(areas > lengths * gaps + out):
-        low, half, high = loops[k, ..., :2]
+        low, half, high = np.moveaxis(loops[:2, ..., k], 0, -1)
         gap = float(gaps[k])
-        if sizes[k].min() > 0.0:
+        if sizes[:, k].min() > 0.0:
             middle = 0.5 * (polygon_centroid(low) + polygon_centroid(high))
             gap = _swayed(gap, polygon_centroid(half) - middle)
         apart, shared = _difference(low, high)
-        if shared < WEAK * sizes[k, ::2].min():  # the wall slants from one to the other
+        if shared < WEAK * sizes[::2, k].min():  # the wall slants from one to the other
             gap = float(np.hypot(gap, np.linalg.norm(polygon_centroid(high) - polygon_centroid(low))))
         needed[k] = lengths[k] * gap + max(float(out[k]), apart)
     return needed

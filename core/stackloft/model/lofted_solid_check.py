@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from stackloft.geometry.bezier_patch import patch_planes
 from stackloft.model.arrays import FloatArray
 from stackloft.model.errors import InputError
 from stackloft.model.lofted_solid import Joint, LoftedSolid, Shell, ShellEnd
@@ -72,9 +73,9 @@ def _check_shell(shell: Shell, name: str) -> None:
     patches = shell.patches
     if patches.ndim != 5 or patches.shape[2:] != (4, 4, 3) or 0 in patches.shape:
         raise InputError("not a grid of bicubic patches", where=name, found=str(patches.shape))
-    if not np.isfinite(patches).all():
-        raise InputError("points that are not finite", where=name)
     size = _size(patches)
+    if not np.isfinite(size):
+        raise InputError("points that are not finite", where=name)
     around = f"{name}, along the loop"
     _check_gap(patches[:, :-1, :, 3] - patches[:, 1:, :, 0], size, around)
     _check_gap(patches[:, -1, :, 3] - patches[:, 0, :, 0], size, around)
@@ -85,10 +86,10 @@ def _check_shell(shell: Shell, name: str) -> None:
 
 
 def _size(patches: FloatArray) -> float:
-    """Return the longest side of the box around all control points, mm."""
-    many = patches.reshape(-1, 48)  # patch by patch: long rows take a tenth of the time that points do
-    ends = many.max(axis=0).reshape(16, 3).max(axis=0) - many.min(axis=0).reshape(16, 3).min(axis=0)
-    return float(ends.max())
+    """Return the longest side of the box around all control points, mm; not finite where they are not."""
+    planes = patch_planes(patches)
+    ends = planes.max(axis=(0, 1, 3, 4)) - planes.min(axis=(0, 1, 3, 4))
+    return float(ends.max())  # NumPy's largest of anything and nan is nan
 
 
 _ENDS = ("first", "last")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from stackloft.model.contour_stack import ContourStack
 from stackloft.model.measurement import SectionRow
 from stackloft.sectioning.section_measures import measure_loops
@@ -22,14 +24,14 @@ def section_rows(contours: ContourStack) -> tuple[SectionRow, ...]:
     (4.0, 8.0, (1.0, 1.0), 1, 0)
     """
     measures = measure_loops(contours)
-    rows = []
-    for index, section in enumerate(contours.sections):
-        own = measures.section == index
-        signed = measures.sign[own] * measures.areas[own]
-        area = float(signed.sum())
-        x, y = (signed @ measures.centroids[own] / area) if area else (float("nan"), float("nan"))
-        holes = sum(loop.hole for loop in section.loops)
-        perimeter = float(measures.perimeters[own].sum())
-        outer = len(section.loops) - holes
-        rows.append(SectionRow(index + 1, section.z, area, perimeter, (float(x), float(y)), outer, holes))
-    return tuple(rows)
+    count = len(contours)
+    signed = measures.sign * measures.areas
+    areas, perimeters = (np.bincount(measures.section, w, count) for w in (signed, measures.perimeters))
+    some = np.where(areas, areas, np.nan)  # no area, no centroid
+    x, y = (np.bincount(measures.section, signed * w, count) / some for w in measures.centroids.T)
+    holes = [sum(loop.hole for loop in section.loops) for section in contours.sections]
+    figures = zip(contours.sections, areas, perimeters, x, y, holes, strict=True)
+    return tuple(
+        SectionRow(k, s.z, float(area), float(edge), (float(a), float(b)), len(s.loops) - inner, inner)
+        for k, (s, area, edge, a, b, inner) in enumerate(figures, start=1)
+    )

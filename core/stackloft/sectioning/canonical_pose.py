@@ -13,13 +13,13 @@ Where all moments that would tell two poses apart are zero, the body is the same
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import groupby
+from itertools import groupby, islice
 
 import numpy as np
 
 from stackloft.geometry.odd_moments import Powers, central_moment_ratios
-from stackloft.model.arrays import FloatArray, frozen_floats, read_only
-from stackloft.model.contour_stack import ContourStack, Loop
+from stackloft.model.arrays import FloatArray, frozen_floats
+from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.sectioning.loop_curves import flipped_points, mirror_ready
 
 POWERS: tuple[Powers, ...] = (
@@ -71,18 +71,17 @@ def flipped_stack(contours: ContourStack, flip: tuple[float, float]) -> ContourS
     """
     if flip == (1.0, 1.0):
         return contours
+    flat = [loop for section in contours.sections for loop in section.loops]
+    points = flipped_points([loop.points for loop in flat], flip)
+    loops = (Loop(own, loop.corners, loop.hole) for own, loop in zip(points, flat, strict=True))
     sections = tuple(
-        replace(section, loops=tuple(_flipped(loop, flip) for loop in section.loops))
+        Section(section.z, tuple(islice(loops, len(section.loops))), section.name)
         for section in contours.sections
     )
     affine = frozen_floats(contours.affine * [*flip, 1.0, 1.0])
     mirrored = replace(contours, sections=sections, affine=affine)
     mirror_ready(contours, mirrored, flip)
     return mirrored
-
-
-def _flipped(loop: Loop, flip: tuple[float, float]) -> Loop:
-    return Loop(read_only(flipped_points(loop.points, flip)), loop.corners, loop.hole)
 
 
 def _odd(powers: Powers) -> tuple[int, int, int]:

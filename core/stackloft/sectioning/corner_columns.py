@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stackloft.model.arrays import FloatArray
+from stackloft.model.arrays import FloatArray, IntArray
 
 PERSISTENT = 0.2
 """Share of the sections on which a corner must show."""
@@ -120,7 +120,7 @@ def _uncrossed(chains: list[CornerChain], sections: int, apart: float) -> list[C
     for chain in chains:
         for others, one in [(kept, chain), *_joined(kept, chain)]:
             trial = sorted([*others, one], key=lambda c: c.mean)
-            if all(_in_order(trial, section, apart) for section in range(sections)):
+            if _in_order(trial, sections, apart):
                 kept = trial
                 break
     return kept
@@ -138,19 +138,19 @@ def _joined(kept: list[CornerChain], chain: CornerChain) -> list[tuple[list[Corn
     return [(others, one) for _, others, one in sorted(ways, key=lambda way: way[0])]
 
 
-def _in_order(chains: list[CornerChain], section: int, apart: float) -> bool:
-    """Return whether the chains' places at a section increase over less than one turn."""
+def _in_order(chains: list[CornerChain], sections: int, apart: float) -> bool:
+    """Return whether the chains' places at every section increase over less than one turn."""
     if len(chains) == 1:
         return True
-    places = [place_at(chain, section) for chain in chains]
-    gaps = [(b - a) % 1.0 for a, b in zip(places, [*places[1:], places[0]], strict=True)]
-    return min(gaps) > apart and abs(sum(gaps) - 1.0) < 1e-6
+    places = np.stack([places_of(chain, np.arange(sections)) for chain in chains])
+    gaps = np.mod(np.roll(places, -1, axis=0) - places, 1.0)
+    return bool((gaps.min(axis=0) > apart).all() and (np.abs(gaps.sum(axis=0) - 1.0) < 1e-6).all())
 
 
-def place_at(chain: CornerChain, section: int) -> float:
-    """Return the chain's place at any section: between and beyond its own by interpolation."""
+def places_of(chain: CornerChain, sections: IntArray) -> FloatArray:
+    """Return the chain's places at any sections: between and beyond its own by interpolation."""
     known = sorted(chain.at)
-    return float(np.interp(section, known, [chain.at[k] for k in known]))
+    return np.asarray(np.interp(sections, known, [chain.at[k] for k in known]))
 
 
 def share_points(chains: list[CornerChain], count: int) -> list[int]:

@@ -10,13 +10,12 @@ from stackloft.geometry.correspondence import slide_points
 from stackloft.geometry.curve_stack import CurveStack
 from stackloft.geometry.point_density import Spread, spread_by_turning
 from stackloft.geometry.seams import solve_phases
-from stackloft.geometry.shoelace import polygon_area
 from stackloft.geometry.simple_polygon import crosses_itself
 from stackloft.model.arrays import BoolArray, FloatArray, IntArray
 from stackloft.model.contour_stack import ContourStack, Loop, Section
 from stackloft.model.errors import InputError
 from stackloft.model.notices import Notice
-from stackloft.sectioning.corner_columns import REACH, CornerChain, follow_corners, place_at, share_points
+from stackloft.sectioning.corner_columns import REACH, CornerChain, follow_corners, places_of, share_points
 from stackloft.sectioning.loop_curves import ready_curves, ready_loops
 
 COARSEST = 0.55
@@ -71,22 +70,22 @@ def equal_points(contours: ContourStack, count: int, kept: frozenset[int] = froz
         )  # fmt: skip
     ready = [loop for own in ready_loops(contours) for loop in own]
     curves = ready_curves(contours)
-    _check_fit(curves, ready, contours)
+    _check_fit(curves, contours)
     z = contours.positions
     seams = _solve_seams(curves, ready, contours)
-    reach = np.minimum(REACH, CLOSE + STEEP * np.diff(z) / curves.lengths.max())
-    chains = follow_corners(seams.corners, count, kept, reach, _in_plane(curves, seams), np.diff(z))
+    chains = _chains(curves, seams, count, kept, np.diff(z))
     fractions, fixed = _first_guess(chains, count, seams)
     solved = _slide(curves, z, fractions, fixed)
     plane, _ = curves.at(np.arange(len(ready))[:, None], solved)
     _check_simple(plane, contours)
-    height = np.broadcast_to(z[:, None, None], (*plane.shape[:2], 1))
-    return EqualSections(np.concatenate([plane, height], axis=2), fixed, curves, seams.notices)
+    points = np.empty((3, count, len(z))).T  # as the skin wants it: along each column from section to section
+    points[..., :2], points[..., 2] = plane, z[:, None]
+    return EqualSections(points, fixed, curves, seams.notices)
 
 
-def _check_fit(curves: CurveStack, loops: list[Loop], contours: ContourStack) -> None:
+def _check_fit(curves: CurveStack, contours: ContourStack) -> None:
     """Refuse loops so jagged that the smooth curve through their points is another shape."""
-    given = np.array([polygon_area(loop.points) for loop in loops])
+    given = curves.polygon_areas
     off = np.abs(curves.areas - given) > COARSEST * given
     if off.any():
         k = int(np.argmax(off))
@@ -156,6 +155,8 @@ def _solve_seams(curves: CurveStack, loops: list[Loop], contours: ContourStack) 
 
 def _directions(curves: CurveStack, tangents: FloatArray, places: list[FloatArray]) -> FloatArray:
     """Return the samples' tangents, at a corner the mean of both its sides': rounding must not choose one."""
+    if not any(map(len, places)):
+        return tangents
     section, sample = (
         np.concatenate(part)
         for part in zip(
@@ -187,6 +188,16 @@ def _corner_places(curves: CurveStack, section: int, corners: IntArray) -> Float
     return np.sort(np.mod(knots - curves.starts[section], 1.0))
 
 
+def _chains(
+    curves: CurveStack, seams: _Seams, count: int, kept: frozenset[int], pitches: FloatArray
+) -> list[CornerChain]:
+    """Return the corners that become points, from section to section."""
+    if not any(map(len, seams.corners)):
+        return []
+    reach = np.minimum(REACH, CLOSE + STEEP * pitches / curves.lengths.max())
+    return follow_corners(seams.corners, count, kept, reach, _in_plane(curves, seams), pitches)
+
+
 def _in_plane(curves: CurveStack, seams: _Seams) -> list[FloatArray]:
     """Return the corners of each section, (c_i, 2) mm."""
     counts = [len(own) for own in seams.corners]
@@ -200,21 +211,22 @@ def _first_guess(chains: list[CornerChain], count: int, seams: _Seams) -> tuple[
 
     Between corners the points are spread by `Spread`: evenly but for bends.
     """
-    sections = len(seams.phases)
-    fixed = np.zeros((sections, count), dtype=bool)
+    section = np.arange(len(seams.phases))
+    fixed = np.zeros((len(section), count), dtype=bool)
     shares = share_points(chains, count) if chains else [count]
-    first = np.concatenate([[0], np.cumsum(shares)])
-    fractions = np.empty((sections, count))
-    for section, phase in enumerate(seams.phases):
-        places = np.array([place_at(chain, section) for chain in chains] or [0.0])
-        gaps = np.mod(np.diff(places), 1.0)
-        turns = phase + places[0] + np.concatenate([[0.0], np.cumsum(gaps), [1.0]])
-        ends = seams.spread.share(section, turns)
-        for k, share in enumerate(shares):
-            stretch = ends[k] + (ends[k + 1] - ends[k]) * np.arange(share) / share
-            fractions[section, first[k] : first[k + 1]] = seams.spread.fraction(section, stretch)
-            fixed[section, first[k]] = bool(chains) and section in chains[k].at
-    return fractions, fixed
+    first = np.cumsum(shares) - shares
+    places = np.stack([places_of(chain, section) for chain in chains] or [np.zeros(len(section))], axis=1)
+    gaps = np.mod(np.diff(places, axis=1), 1.0)
+    passed = np.concatenate([np.zeros((len(section), 1)), np.cumsum(gaps, axis=1)], axis=1)
+    begin = seams.phases + places[:, 0]
+    turns = np.column_stack([begin[:, None] + passed, begin + 1.0])
+    ends = seams.spread.share(section[:, None], turns)
+    share = np.repeat(np.arange(len(shares)), shares)  # the corner before each point, and how far on
+    part = (np.arange(count) - first[share]) / np.array(shares)[share]
+    stretch = ends[:, share] + (ends[:, share + 1] - ends[:, share]) * part
+    for k, chain in enumerate(chains):
+        fixed[list(chain.at), first[k]] = True
+    return seams.spread.fraction(section[:, None], stretch), fixed
 
 
 def _slide(curves: CurveStack, z: FloatArray, fractions: FloatArray, fixed: BoolArray) -> FloatArray:

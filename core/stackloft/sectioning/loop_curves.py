@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import islice
+from itertools import islice, pairwise
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -40,11 +40,13 @@ def ready_loops(contours: ContourStack) -> tuple[tuple[Loop, ...], ...]:
     """
     ready = _READY.get(contours)
     if ready is None:
-        loops = iter(_smooth(contours))
-        ready = tuple(
-            tuple(ready_loop(loop, section.name) for loop in islice(loops, len(section.loops)))
-            for section in contours.sections
+        names = [section.name for section in contours.sections for _ in section.loops]
+        smooth = _smooth(contours)
+        loops = iter(
+            Loop(loop.points, loop.corners) if sound else ready_loop(loop, name)
+            for loop, sound, name in zip(smooth, _sound(smooth), names, strict=True)
         )
+        ready = tuple(tuple(islice(loops, len(section.loops))) for section in contours.sections)
         _READY[contours] = ready
     return ready
 
@@ -75,34 +77,39 @@ def mirror_ready(contours: ContourStack, mirrored: ContourStack, flip: tuple[flo
     InputError
         As these do.
     """
-    _READY[mirrored] = tuple(
-        tuple(_mirrored(loop, flip) for loop in loops) for loops in ready_loops(contours)
-    )
+    given = ready_loops(contours)
+    loops = iter(_mirrored([loop for own in given for loop in own], flip))
+    _READY[mirrored] = tuple(tuple(islice(loops, len(own))) for own in given)
     _CURVES[mirrored] = ready_curves(contours).flipped(flip)
 
 
-def _mirrored(loop: Loop, flip: tuple[float, float]) -> Loop:
-    """Return a counter-clockwise loop with x and y multiplied, counter-clockwise from the same vertex."""
-    points = flipped_points(loop.points, flip)
+def _mirrored(loops: list[Loop], flip: tuple[float, float]) -> list[Loop]:
+    """Return counter-clockwise loops with x and y multiplied, counter-clockwise from the same vertices."""
+    points = flipped_points([loop.points for loop in loops], flip)
     if flip[0] * flip[1] > 0.0:
-        return Loop(points, loop.corners)
-    back = np.concatenate([points[:1], points[:0:-1]])
-    return Loop(back, np.sort(-loop.corners % len(points)))
+        return [Loop(own, loop.corners) for own, loop in zip(points, loops, strict=True)]
+    return [
+        Loop(np.concatenate([own[:1], own[:0:-1]]), np.sort(-loop.corners % len(own)))
+        for own, loop in zip(points, loops, strict=True)
+    ]
 
 
-def flipped_points(points: FloatArray, flip: tuple[float, float]) -> FloatArray:
-    """Return (k, 2) points with x and y multiplied by 1 or -1.
+def flipped_points(loops: list[FloatArray], flip: tuple[float, float]) -> list[FloatArray]:
+    """Return (k_i, 2) points with x and y multiplied by 1 or -1, all loops' at once.
 
     Examples
     --------
-    >>> flipped_points(np.array([[1.0, 2.0]]), (-1.0, 1.0)).tolist()
-    [[-1.0, 2.0]]
+    >>> [points.tolist() for points in flipped_points([np.array([[1.0, 2.0]])], (-1.0, 1.0))]
+    [[[-1.0, 2.0]]]
     """
-    flipped = points.copy()
+    if not loops:
+        return []
+    flipped = np.concatenate(loops)
     for axis in (0, 1):  # a coordinate at a time: rows of two take several times as long
         if flip[axis] < 0.0:
-            np.negative(points[:, axis], out=flipped[:, axis])
-    return flipped
+            np.negative(flipped[:, axis], out=flipped[:, axis])
+    stops = np.cumsum([len(points) for points in loops]).tolist()
+    return [read_only(flipped[start:stop]) for start, stop in pairwise([0, *stops])]
 
 
 def _smooth(contours: ContourStack) -> list[Loop]:
@@ -119,6 +126,24 @@ def _thinned(loop: Loop) -> Loop:
     if len(loop.points) < DENSE or len(loop.corners):
         return loop
     return Loop(read_only(np.ascontiguousarray(loop.points[::2])), loop.corners, loop.hole)
+
+
+def _sound(loops: list[Loop]) -> list[bool]:
+    """Return which loops are as `ready_loop` would leave them: told for all at once."""
+    if not loops:
+        return []
+    counts = np.array([len(loop.points) for loop in loops])
+    first = np.cumsum(counts) - counts
+    points = np.concatenate([loop.points for loop in loops])
+    arms = [each - np.repeat(each[first], counts) for each in points.T]
+    before = np.arange(-1, len(points) - 1)
+    before[first] += counts
+    steps = [np.abs(arm - arm.take(before)) for arm in arms]
+    shortest = np.minimum.reduceat(np.maximum(*steps), first)
+    size = np.maximum(*(np.maximum.reduceat(np.abs(arm), first) for arm in arms))
+    doubled = np.add.reduceat(arms[0].take(before) * arms[1] - arms[1].take(before) * arms[0], first)
+    sound: list[bool] = ((counts > 2) & (shortest > 1e-9 * size) & (0.5 * doubled > 1e-12 * size**2)).tolist()
+    return sound
 
 
 def ready_loop(loop: Loop, name: str) -> Loop:

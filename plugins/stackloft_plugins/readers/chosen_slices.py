@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 
 from stackloft.contracts.stack_file import NAME, StackFile
@@ -39,11 +41,10 @@ def between(every: tuple[Path, ...], matched: tuple[int, ...], first: str, last:
     return tuple(number for number in matched if start <= number <= stop)
 
 
-def sample(files: list[Path]) -> list[Path]:
+def sample(paths: Iterable[Path]) -> list[Path]:
     """Return the few files worth opening: those that promise a picture first."""
-    return sorted(files, key=lambda path: (path.suffix.lower() not in SUFFIXES, natural_key(path.name)))[
-        :_PROBED
-    ]
+    ordered = sorted(paths, key=lambda path: (path.suffix.lower() not in SUFFIXES, natural_key(path.name)))
+    return list(islice((path for path in ordered if path.is_file()), _PROBED))
 
 
 def masks(said: StackFile) -> frozenset[str]:

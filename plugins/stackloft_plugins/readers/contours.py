@@ -124,10 +124,8 @@ def _table_of(path: Path) -> Path:
 
 
 def _tables(folder: Path) -> list[Path]:
-    files = sorted(
-        (item for item in folder.iterdir() if item.is_file()), key=lambda item: natural_key(item.name)
-    )
-    likely = [item for item in files if item.suffix.lower() in {".csv", ".txt"}]
+    named = (item for item in folder.iterdir() if item.suffix.lower() in {".csv", ".txt"})
+    likely = sorted((item for item in named if item.is_file()), key=lambda item: natural_key(item.name))
     return [item for item in likely[:_PROBED] if _is_table(item)]
 
 

@@ -27,7 +27,7 @@ def check_locations(frames: tuple[Frame, ...]) -> None:
     if len(said) < 4 or len(said) < len(frames):
         return
     normal = normal_of(frames[0].axes)
-    along = np.array([frame.position @ normal for frame, _ in said])
+    along = np.array([frame.position for frame, _ in said]) @ normal
     told = np.array([location for _, location in said])
     for sign in (1.0, -1.0):
         off = told - sign * along

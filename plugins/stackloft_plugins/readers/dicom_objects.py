@@ -18,10 +18,7 @@ _HEAD = 2048
 _PROBED = 40
 _NAMED = 5
 _CLASS = rb"1\.2\.840\.10008\.5\.1\.4\.1\.1\."
-_KINDS = {
-    RTSTRUCT: re.compile(_CLASS + rb"481\.3(?![0-9.])"),
-    SEGMENTATION: re.compile(_CLASS + rb"66\.[47](?![0-9.])"),
-}
+_KINDS = re.compile(_CLASS + rb"(?:(481\.3)|66\.[47])(?![0-9.])")
 CONFIDENCE = 0.95
 """Of a reader whose kind a file is: surer than the reader of pictures is of any DICOM file."""
 
@@ -43,7 +40,8 @@ def object_kind(path: Path) -> str:
         return ""
     if not begins_as_dicom(head):
         return ""
-    return next((kind for kind, pattern in _KINDS.items() if pattern.search(head)), "")
+    found = _KINDS.findall(head)
+    return "" if not found else RTSTRUCT if any(found) else SEGMENTATION
 
 
 def objects_at(source: Path, kind: str) -> tuple[Path, ...]:

@@ -14,7 +14,6 @@ odd text) is no error: None says that pydicom must read the file.
 from __future__ import annotations
 
 import struct
-from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -29,19 +28,21 @@ from stackloft_plugins.readers.dicom_sniff import first_bytes
 EXPLICIT_LITTLE = "1.2.840.10008.1.2.1"
 _HEADER = 1 << 15
 """Bytes looked at; a longer header is not plain."""
-_PIXELS = (0x7FE0, 0x0010)
-_SYNTAX = (0x0002, 0x0010)
+_USUAL = 1 << 12
+"""Bytes looked at first: a scanner's header is seldom longer."""
+_PIXELS = 0x7FE00010
+_SYNTAX = 0x00020010
+_SAMPLES = frozenset({b"OW", b"OB"})
 _LONG = frozenset({b"OB", b"OD", b"OF", b"OL", b"OV", b"OW", b"SQ", b"SV", b"UC", b"UN", b"UR", b"UT", b"UV"})
 _SHORT = frozenset(
     b"AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US".split()
 )  # value types whose length takes two bytes
+_TYPES = _SHORT | _LONG
 _NUMBERS = {b"US": "H", b"SS": "h", b"UL": "I", b"SL": "i", b"FD": "d", b"FL": "f"}
 _TEXTS = frozenset({b"CS", b"UI", b"DS", b"IS", b"LO", b"SH"})
 _UNDEFINED = 0xFFFFFFFF
-_ALWAYS = frozenset({_SYNTAX, _PIXELS})
 _ELEMENT = struct.Struct("<HH2sH").unpack_from
-
-Tag = tuple[int, int]
+_LENGTH = struct.Struct("<I").unpack_from
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,50 +114,43 @@ def plain_header(path: Path, keywords: tuple[str, ...]) -> PlainHeader | None:
     OSError
         The file cannot be opened.
     """
-    head = first_bytes(path, _HEADER)
+    head = first_bytes(path, _USUAL)
+    found = _header(head, _tags(keywords))
+    if found is None and len(head) == _USUAL:
+        found = _header(first_bytes(path, _HEADER), _tags(keywords))
+    return found
+
+
+def _header(head: bytes, wanted: dict[int, str]) -> PlainHeader | None:
+    """Return the wanted elements of a file that begins so, or None when it is not plain, or runs on."""
     if head[128:132] != b"DICM":
         return None
-    wanted = _tags(keywords)
     values: dict[str, Any] = {}
+    at, last = 132, 0
     try:
-        for tag, kind, start, length in _elements(head, wanted):
-            if tag == _PIXELS:
-                return PlainHeader(values, start, length)
-            value = _value(kind, head[start : start + length])
+        while last != _PIXELS:
+            group, element, kind, length = _ELEMENT(head, at)
+            tag = group << 16 | element
+            start = at + 8
+            if kind in _LONG:
+                start, length = at + 12, _LENGTH(head, at + 8)[0]
+            at = start + length
+            _check_element(tag, kind, length, last, at <= len(head))
+            last = tag
             if tag in wanted:
-                values[wanted[tag]] = value
-            elif value != EXPLICIT_LITTLE:
+                values[wanted[tag]] = _value(kind, head[start:at])
+            elif tag == _SYNTAX and _value(kind, head[start:at]) != EXPLICIT_LITTLE:
                 return None
     except (struct.error, ValueError):
         return None
-    return None
+    return PlainHeader(values, start, length)
 
 
-def _elements(head: bytes, wanted: Container[Tag]) -> Iterator[tuple[Tag, bytes, int, int]]:
-    """Yield tag, type, start and length of the wanted elements, the transfer syntax and the pixel data.
-
-    Raises
-    ------
-    ValueError
-        An element that is not plain.
-    """
-    at, last, end = 132, (0, 0), len(head)
-    while last != _PIXELS:
-        group, element, kind, length = _ELEMENT(head, at)
-        tag = (group, element)
-        if kind in _SHORT:
-            start = at + 8
-        elif kind in _LONG:
-            start, length = at + 12, int(struct.unpack_from("<I", head, at + 8)[0])
-        else:
-            raise ValueError(kind)
-        at = start + length
-        plain = at <= end if tag != _PIXELS else kind in {b"OW", b"OB"}
-        if not last < tag <= _PIXELS or not plain or length == _UNDEFINED:
-            raise ValueError(tag)
-        last = tag
-        if tag in wanted or tag in _ALWAYS:
-            yield tag, kind, start, length
+def _check_element(tag: int, kind: bytes, length: int, last: int, whole: bool) -> None:
+    """Raise ValueError for an element that is not plain."""
+    plain = whole and kind in _TYPES if tag != _PIXELS else kind in _SAMPLES
+    if not (plain and last < tag <= _PIXELS) or length == _UNDEFINED:
+        raise ValueError(tag)
 
 
 @lru_cache(maxsize=4096)
@@ -181,8 +175,8 @@ def _value(kind: bytes, raw: bytes) -> Any:
 
 
 @lru_cache
-def _tags(keywords: tuple[str, ...]) -> dict[Tag, str]:
+def _tags(keywords: tuple[str, ...]) -> dict[int, str]:
     from pydicom.datadict import tag_for_keyword  # noqa: PLC0415 - slow to import, needed where DICOM is read
 
     numbers = {keyword: tag_for_keyword(keyword) for keyword in keywords}
-    return {(number >> 16, number & 0xFFFF): keyword for keyword, number in numbers.items() if number}
+    return {number: keyword for keyword, number in numbers.items() if number}

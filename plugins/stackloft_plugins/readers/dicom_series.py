@@ -151,7 +151,7 @@ def one_volume(frames: Series, volume: int | None) -> tuple[Series, tuple[Notice
 def _places(frames: Series) -> list[list[Frame]]:
     """Return the frames by their place along the normal, each place in order of acquisition."""
     normal = normal_of(frames[0].axes)
-    along = np.array([frame.position @ normal for frame in frames])
+    along = np.array([frame.position for frame in frames]) @ normal
     order = np.argsort(along, kind="stable")
     gaps = np.diff(along[order])
     real = gaps[gaps > _APART]
@@ -165,15 +165,13 @@ def _places(frames: Series) -> list[list[Frame]]:
 
 def _orientations(frames: Series) -> list[Hashable]:
     """Return for every frame the number of the first one that is parallel to it."""
-    axes = np.array([frame.axes for frame in frames])
-    first: list[int] = []
-    keys: list[Hashable] = []
-    for k in range(len(frames)):
-        same = [i for i in first if np.abs(axes[k] - axes[i]).max() <= PARALLEL]
-        if not same:
-            first.append(k)
-        keys.append(same[0] if same else k)
-    return keys
+    axes = np.array([frame.axes for frame in frames]).reshape(len(frames), -1)
+    keys = np.full(len(frames), -1)
+    while (left := np.flatnonzero(keys < 0)).size:
+        parallel = np.abs(axes[left] - axes[left[0]]).max(axis=1) <= PARALLEL
+        keys[left[parallel]] = left[0]
+        keys[left[0]] = left[0]  # whatever its numbers are
+    return list(keys.tolist())
 
 
 _TRAITS: tuple[tuple[str, Callable[[Series], list[Hashable]], Callable[[Frame], str]], ...] = (

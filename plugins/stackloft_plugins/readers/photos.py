@@ -136,7 +136,7 @@ class PhotosReader:
         """Return 0.8 for a folder (or pattern) with at least one picture, 0 otherwise."""
         folder, pattern = split_source(path)
         try:
-            files = sorted(item for item in folder.glob(pattern) if item.is_file()) if folder.is_dir() else []
+            files = folder.glob(pattern) if folder.is_dir() else ()
             found = any(picture_kind(item) in READABLE for item in sample(files))
         except (OSError, ValueError):
             return 0.0
