@@ -12,7 +12,7 @@ from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.contour_stack import Loop
 from stackloft.model.segmentation import SectionField
 from stackloft.sectioning import voids
-from stackloft.sectioning.single_outline import single_outline
+from stackloft.sectioning.single_outline import single_outlines
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
 from stackloft.sectioning.slice_pieces import body_pieces, single_piece
 from stackloft.sectioning.smoothing import smooth_loop
@@ -20,7 +20,7 @@ from stackloft.sectioning.traced_corners import CornerRules
 from stackloft.sectioning.tracing import trace_fields
 from stackloft.sectioning.turning_loops import may_turn
 from stackloft.sectioning.voids import CRACKS
-from stackloft_plugins.integrators.edge_zone import edge_zone
+from stackloft_plugins.integrators.edge_zone import Neighboured, edge_zones
 from stackloft_plugins.integrators.seen_slice import SeenSlice
 from stackloft_plugins.segmenters.slab_level import _DEEP, _slice_bands
 
@@ -110,7 +110,7 @@ def test_traced_outlines_are_the_same_points():
         grey, level = random_slice(rng)
         section = SectionField(grey, level, (3, 4), noise=random_noise(rng))
         one = SliceToTrace(section, (0.5, 0.7), (grey.shape[0] + 9, grey.shape[1] + 9), "a")
-        points = single_outline(one, TraceRules())
+        (points,) = single_outlines([one], TraceRules())
         if points is None:
             continue
         traced += 1
@@ -148,7 +148,7 @@ def test_smoothed_loops_and_corners_are_the_same():
             turning.append(bool(may_turn([loop], [pixel], CornerRules())[0]))
         assert turns == turning[-1]
         np.testing.assert_allclose(smooth.points, reference.points, rtol=0.0, atol=1e-8 * np.ptp(points))
-        compiled += smooth_closed(points, 6.0 * pixel, 1.5 * pixel, 8) is not None
+        compiled += smooth_closed([points], 6.0 * pixel, 1.5 * pixel, 8)[0] is not None
     assert compiled > SLICES // 2
     assert SLICES // 10 < sum(turning) < SLICES - SLICES // 10
 
@@ -157,12 +157,14 @@ def test_smoothed_loops_and_corners_are_the_same():
 @pytest.mark.parametrize("rings", [Rings(4, 1), Rings(2, 2)])
 def test_edge_zones_and_rings_hold_the_same_grey(zone, rings):
     rng = np.random.default_rng(5)
+    slices = []
     for number in range(SLICES // 8):
         current, before, after = (_seen(rng) for _ in range(3))
-        beside = (None if number % 5 == 0 else before, after)
-        found = edge_zone(current, beside, zone, rings)
-        with without_kernels():
-            reference = edge_zone(current, beside, zone, rings)
+        slices.append(Neighboured(current, (None if number % 5 == 0 else before, after), rings))
+    together = edge_zones(slices, zone)
+    with without_kernels():
+        references = edge_zones(slices, zone)
+    for found, reference in zip(together, references, strict=True):
         assert (found.inside, found.edge, found.full) == (reference.inside, reference.edge, reference.full)
         for own, other in zip(found.rings, reference.rings, strict=True):
             assert np.array_equal(own, other)
@@ -182,8 +184,8 @@ def test_levels_beyond_a_kind_of_numbers_leave_nothing_or_everything():
     grey[10:20, 10:60] = 9
     full = SeenSlice(SectionField(grey, 8.0))
     for level in (-np.inf, -1e9, -0.5, 9.0, 1e9, np.inf, np.nan):
-        own = SeenSlice(SectionField(grey, level))
-        found = edge_zone(own, (full, full), 2)
+        one = Neighboured(SeenSlice(SectionField(grey, level)), (full, full))
+        (found,) = edge_zones([one], 2)
         with without_kernels():
-            reference = edge_zone(own, (full, full), 2)
+            (reference,) = edge_zones([one], 2)
         assert (found.inside, found.edge, found.full) == (reference.inside, reference.edge, reference.full)

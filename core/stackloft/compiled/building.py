@@ -23,7 +23,7 @@ COMPILERS = ("cc", "gcc", "clang")
 """Looked for in this order, unless ``$CC`` names one."""
 # No fused multiply-add (-ffp-contract): figures would depend on the processor.
 FLAGS = (
-    *("-O3", "-std=c11", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno"),
+    *("-O3", "-std=c11", "-fPIC", "-shared", "-pthread", "-ffp-contract=off", "-fno-math-errno"),
     *("-fvisibility=hidden", "-Wall", "-Wextra"),
 )
 SWITCH = "STACKLOFT_COMPILED"

@@ -1,9 +1,10 @@
-"""What a slice adds to a body's volume by partly filled pixels."""
+"""What slices add to a body's volume by partly filled pixels."""
 
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, byref, c_double, c_int, c_void_p
+from collections.abc import Sequence
+from ctypes import POINTER, c_double, c_int, c_int32, c_int64, c_void_p
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,40 +12,54 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.compiled.arrays import Noise, Pixels, Scratch, address, pixels_of
-from stackloft.compiled.kernel import Kernel
+from stackloft.compiled.kernel import THREADS, Kernel
+
+FloatArray = NDArray[np.float64]
+
+
+class _MaskJob(ctypes.Structure):
+    _fields_ = (("picture", Pixels), ("level", c_double), ("words", c_void_p), ("done", c_int32))
 
 
 class _Beside(ctypes.Structure):
     _fields_ = (
         ("words", c_void_p),
-        ("rows", ctypes.c_int32),
-        ("columns", ctypes.c_int32),
-        ("down", ctypes.c_int64),
-        ("right", ctypes.c_int64),
+        ("rows", c_int32),
+        ("columns", c_int32),
+        ("down", c_int64),
+        ("right", c_int64),
     )
 
 
 class _Rings(ctypes.Structure):
     _fields_ = (
         ("values", c_void_p),
-        ("counts", c_void_p),
-        ("room", ctypes.c_int64),
-        ("reach", ctypes.c_int32),
-        ("step", ctypes.c_int32),
+        ("room", c_int64),
+        ("counts", c_int64 * 2),
+        ("reach", c_int32),
+        ("step", c_int32),
     )
 
 
-_cover = Kernel(
-    "stackloft_coverage", c_int, POINTER(Pixels), c_double, c_void_p, POINTER(_Beside), POINTER(_Beside),
-    c_int, c_void_p, c_void_p, POINTER(_Rings),
-)  # fmt: skip
-_mask = Kernel("stackloft_mask", c_int, POINTER(Pixels), c_double, c_void_p)
+class _Job(ctypes.Structure):
+    _fields_ = (
+        ("picture", Pixels),
+        ("level", c_double),
+        ("words", c_void_p),
+        ("others", _Beside * 2),
+        ("half", c_void_p),
+        ("radius", c_int32),
+        ("done", c_int32),
+        ("sums", c_double * 5),
+        ("ring", _Rings),
+    )
+
+
+_masks = Kernel("stackloft_masks", None, POINTER(_MaskJob), c_int64, c_int)
+_cover = Kernel("stackloft_coverage", None, POINTER(_Job), c_int64, c_int)
 _ROOM = 1 << 16
 """Pixels of a ring; the levels of a larger one are left to others."""
 _ring_values = Scratch(np.float64, _ROOM)
-
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,18 +70,28 @@ class Shown:
     level: float
     offset: tuple[int, int]
     """(row, column) of the first pixel in the slice."""
+    noise: Noise | None
+    """What noise adds to empty pixels."""
     words: NDArray[np.uint64]
     """The body's mask, a bit a pixel."""
 
-    @staticmethod
-    def of(values: NDArray[Any], level: float, offset: tuple[int, int]) -> Shown | None:
-        """Return a slice with its mask; None of one that the kernels cannot read, or without them."""
-        masked, picture = _mask.here(), pixels_of(values)
-        if masked is None or picture is None:
-            return None
-        rows, columns = values.shape
-        words = np.empty(rows * -(-columns // 64), np.uint64)
-        return Shown(values, level, offset, words) if masked(byref(picture), level, address(words)) else None
+    @property
+    def picture(self) -> Pixels:
+        """The grey levels for the kernels."""
+        picture = pixels_of(self.values, self.noise)
+        if picture is None:
+            raise TypeError(self.values.dtype)
+        return picture
+
+
+@dataclass(frozen=True, slots=True)
+class Rings:
+    """Rings beside the edge zone."""
+
+    reach: int
+    """Pixels by which they are wide, counted among those seen."""
+    step: int
+    """Of rows and columns, every how manyeth is seen."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,55 +112,77 @@ class Covered:
     """Where they were asked for: the field above the level beside the zone, on the body's side and beyond."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rings:
-    """Rings beside the edge zone."""
+@dataclass(frozen=True, slots=True, eq=False)
+class ToCover:
+    """A slice whose edge zone is to be summed up."""
 
-    reach: int
-    """Pixels by which they are wide, counted among those seen."""
-    step: int
-    """Of rows and columns, every how manyeth is seen."""
+    own: Shown
+    beside: tuple[Shown | None, Shown | None]
+    """The slices before and after; None where there is none."""
+    rings: Rings | None
+    """What is wanted of the rings beside the zone."""
 
 
-def covered(
-    own: Shown,
-    noise: Noise | None,
-    beside: tuple[Shown | None, Shown | None],
-    reach: NDArray[np.int32],
-    rings: Rings | None,
-) -> Covered | None:
-    """Return a slice's sums, given the slices before and after; None without compiled kernels.
+Field = tuple[NDArray[Any], float, tuple[int, int], "Noise | None"]
+"""Grey levels, their level, the first pixel's place, noise."""
+
+
+def shown_all(fields: Sequence[Field]) -> list[Shown] | None:
+    """Return slices with their masks; None where the kernels cannot read all of them, or without them."""
+    masks = _masks.here()
+    seen = [pixels_of(values) for values, *_ in fields]
+    if masks is None or None in seen or not fields:
+        return None
+    words = [np.empty(rows * -(-columns // 64), np.uint64) for rows, columns in (f[0].shape for f in fields)]
+    jobs = (_MaskJob * len(fields))(
+        *(
+            _MaskJob(picture, level, address(own))
+            for picture, own, (_, level, *_) in zip(seen, words, fields, strict=True)
+        )
+    )
+    masks(jobs, len(jobs), THREADS)
+    if not all(job.done for job in jobs):
+        return None
+    return [Shown(*one, own) for one, own in zip(fields, words, strict=True)]
+
+
+def covered_all(slices: Sequence[ToCover], reach: NDArray[np.int32]) -> list[Covered | None]:
+    """Return slices' sums; None of one whose rings are too large, of all without compiled kernels.
 
     Parameters
     ----------
-    own : Shown
-    noise : Noise or None
-        What noise adds to its empty pixels.
-    beside : tuple
-        The slices before and after; None where there is none.
+    slices : sequence of ToCover
     reach : (r + 1,) int32 array
         How far the rows of the disc by which the zone is wide reach, from the middle one outwards.
-    rings : Rings or None
-        What is wanted of the rings beside the zone.
     """
-    cover, picture = _cover.here(), pixels_of(own.values, noise)
-    if cover is None or picture is None:
+    cover = _cover.here()
+    if cover is None or not slices:
+        return [None] * len(slices)
+    room = _ring_values.rows(2 * len(slices))
+    jobs = (_Job * len(slices))(*(_job(one, room[2 * k], reach) for k, one in enumerate(slices)))
+    cover(jobs, len(jobs), THREADS)
+    return [
+        _covered(job, room[2 * k : 2 * k + 2], one.rings)
+        for k, (job, one) in enumerate(zip(jobs, slices, strict=True))
+    ]
+
+
+def _job(one: ToCover, room: FloatArray, reach: NDArray[np.int32]) -> _Job:
+    own, first, last = one.own, *(_placed(one.own, other) for other in one.beside)
+    ring = _Rings(None, 0, (0, 0), 0, 1)
+    if one.rings is not None:
+        ring = _Rings(address(room), _ROOM, (0, 0), one.rings.reach, one.rings.step)
+    half, radius = address(reach), len(reach) - 1
+    return _Job(own.picture, own.level, address(own.words), (first, last), half, radius, 0, (), ring)
+
+
+def _covered(job: _Job, room: FloatArray, rings: Rings | None) -> Covered | None:
+    if not job.done:
         return None
-    first, last = (byref(_placed(own, other)) for other in beside)
-    sums, values, counts = np.empty(5), _ring_values.rows(2), np.zeros(2, np.int64)
-    wanted = None
-    if rings is not None:
-        wanted = byref(_Rings(address(values), address(counts), _ROOM, rings.reach, rings.step))
-    answer = cover(
-        byref(picture), own.level, address(own.words), first, last, len(reach) - 1, address(reach),
-        address(sums), wanted,
-    )  # fmt: skip
-    if not answer:
-        return None
-    inside, edge, grey, full, full_grey = sums.tolist()
+    inside, edge, grey, full, full_grey = job.sums
     found = None
     if rings is not None:
-        within, beyond = (values[k, : counts[k]].copy() for k in (0, 1))
+        within, beyond = (room[k, : job.ring.counts[k]].copy() for k in (0, 1))
         found = (within, beyond)
     return Covered(int(inside), int(edge), grey, int(full), full_grey, found)
 

@@ -3,10 +3,24 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Callable
 from typing import Any
 
 from stackloft.compiled.library import kernels
+
+_MOST = 4
+
+
+def _processors() -> int:
+    """Return how many processors this process may use."""
+    usable = getattr(os, "sched_getaffinity", None)
+    return len(usable(0)) if usable is not None else os.cpu_count() or 1
+
+
+THREADS = min(_MOST, _processors())
+"""Threads among which a kernel shares out slices or loops. They know nothing of the interpreter's lock, so
+that small pieces of work gain by them too; more would only wait for memory."""
 
 
 class Kernel:

@@ -1,34 +1,86 @@
-"""Closed loops looked through for corners and smoothed, one at a time."""
+"""Closed loops looked through for corners and smoothed."""
 
 from __future__ import annotations
 
-from ctypes import c_double, c_int, c_int64, c_void_p
+import ctypes
+from collections.abc import Sequence
+from ctypes import POINTER, byref, c_double, c_int, c_int32, c_int64, c_void_p
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.compiled.arrays import Scratch, address
-from stackloft.compiled.kernel import Kernel
+from stackloft.compiled.kernel import THREADS, Kernel
 
 FloatArray = NDArray[np.float64]
 
-_smooth = Kernel(
-    "stackloft_smooth_closed", c_int64, c_void_p, c_int64, c_double, c_double, c_double, c_void_p, c_int64
-)
-_turn = Kernel(
-    "stackloft_may_turn", c_int, c_void_p, c_int64, c_double, c_double, c_double, c_int, c_int, c_double
-)
+
+class _SmoothJob(ctypes.Structure):
+    _fields_ = (
+        ("points", c_void_p),
+        ("length", c_int64),
+        ("out", c_void_p),
+        ("capacity", c_int64),
+        ("count", c_int64),
+    )
+
+
+class _SmoothJobs(ctypes.Structure):
+    _fields_ = (
+        ("spacing", c_double),
+        ("step", c_double),
+        ("fewest", c_double),
+        ("loops", POINTER(_SmoothJob)),
+    )
+
+
+class _TurnJob(ctypes.Structure):
+    _fields_ = (("points", c_void_p), ("length", c_int64), ("pixel", c_double), ("answer", c_int32))
+
+
+class _TurnJobs(ctypes.Structure):
+    _fields_ = (
+        ("shortest", c_double),
+        ("wide", c_double),
+        ("least_cosine", c_double),
+        ("near", c_int32),
+        ("far", c_int32),
+        ("loops", POINTER(_TurnJob)),
+    )
+
+
+_smooth = Kernel("stackloft_smooth_closed", None, POINTER(_SmoothJobs), c_int64, c_int)
+_turn = Kernel("stackloft_may_turn", None, POINTER(_TurnJobs), c_int64, c_int)
 _samples = Scratch(np.float64, 2)
 
 
-def smooth_closed(points: FloatArray, spacing: float, step: float, fewest: int) -> FloatArray | None:
-    """Return a closed loop's least-squares cubic spline on even knots, sampled evenly.
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """When a loop may have a corner."""
 
-    None without compiled kernels, or where vertices are too few for even knots.
+    shortest: float
+    """Pixels around; a shorter loop may have any."""
+    wide: float
+    """Pixels between samples."""
+    near: int
+    """First sample behind and ahead of each that a line is fitted to."""
+    far: int
+    """Last one."""
+    least_cosine: float
+    """Of the angle between the two lines where there is no corner."""
+
+
+def smooth_closed(
+    loops: Sequence[FloatArray], spacing: float, step: float, fewest: int
+) -> list[FloatArray | None]:
+    """Return closed loops as least-squares cubic splines on even knots, sampled evenly.
+
+    None of a loop whose vertices are too few for even knots; None of all without compiled kernels.
 
     Parameters
     ----------
-    points : (k, 2) array
+    loops : sequence of (k, 2) arrays
         Vertices, none of which repeats the one before.
     spacing, step : float
         Between knots and between samples.
@@ -36,43 +88,43 @@ def smooth_closed(points: FloatArray, spacing: float, step: float, fewest: int) 
         Spans that there are at least.
     """
     smooth = _smooth.here()
-    if smooth is None:
-        return None
-    own = np.ascontiguousarray(points, np.float64)
-    capacity = max(16, 2 * len(own))
-    room = _samples.rows(capacity)
-    count = smooth(address(own), len(own), spacing, step, float(fewest), address(room), capacity)
-    return room[:count].copy() if count else None
+    if smooth is None or not loops:
+        return [None] * len(loops)
+    own = [np.ascontiguousarray(points, np.float64) for points in loops]
+    rooms = [max(16, 2 * len(points)) for points in own]
+    room, starts = _samples.rows(sum(rooms)), np.cumsum([0, *rooms]).tolist()
+    place, size = address(room), room.strides[0]
+    jobs = (_SmoothJob * len(own))(
+        *(
+            _SmoothJob(address(points), len(points), place + start * size, most)
+            for points, start, most in zip(own, starts[:-1], rooms, strict=True)
+        )
+    )
+    smooth(byref(_SmoothJobs(spacing, step, float(fewest), jobs)), len(own), THREADS)
+    return [
+        room[start : start + job.count].copy() if job.count else None
+        for start, job in zip(starts[:-1], jobs, strict=True)
+    ]
 
 
-def turns_somewhere(
-    points: FloatArray,
-    pixel: float,
-    shortest: float,
-    wide: float,
-    lines: tuple[int, int],
-    least_cosine: float,
-) -> bool | None:
-    """Return whether a traced loop may have a corner; None without compiled kernels.
+def turns_somewhere(loops: Sequence[FloatArray], pixels: Sequence[float], rules: Turns) -> list[bool] | None:
+    """Return for each traced loop whether it may have a corner; None without compiled kernels.
 
     Parameters
     ----------
-    points : (k, 2) array
+    loops : sequence of (k, 2) arrays
         Vertices, mm.
-    pixel : float
-        Pixel size, mm.
-    shortest : float
-        Pixels around; a shorter loop may have any.
-    wide : float
-        Pixels between samples.
-    lines : tuple of int
-        First and last sample behind and ahead of each that a line is fitted to.
-    least_cosine : float
-        Of the angle between the two lines where there is no corner.
+    pixels : sequence of float
+        Pixel size of each, mm.
+    rules : Turns
     """
     turn = _turn.here()
     if turn is None:
         return None
-    own = np.ascontiguousarray(points, np.float64)
-    answer = turn(address(own), len(own), pixel, shortest, wide, *lines, least_cosine)
-    return None if answer < 0 else bool(answer)
+    own = [np.ascontiguousarray(points, np.float64) for points in loops]
+    jobs = (_TurnJob * len(own))(
+        *(_TurnJob(address(points), len(points), pixel) for points, pixel in zip(own, pixels, strict=True))
+    )
+    given = _TurnJobs(rules.shortest, rules.wide, rules.least_cosine, rules.near, rules.far, jobs)
+    turn(byref(given), len(own), THREADS)
+    return None if any(job.answer < 0 for job in jobs) else [bool(job.answer) for job in jobs]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+import ctypes
+from collections.abc import Sequence
+from ctypes import POINTER, c_double, c_int, c_int32, c_int64, c_void_p
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,14 +12,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stackloft.compiled.arrays import Pixels, Scratch, address, pixels_of
-from stackloft.compiled.kernel import Kernel
+from stackloft.compiled.kernel import THREADS, Kernel
 
 _LONGEST = 1 << 15
 """Border pixels that the kernel follows; a longer outline is left to others."""
-_follow = Kernel(
-    "stackloft_solid_piece", c_int, POINTER(Pixels), c_double, c_void_p, c_int64, c_void_p, c_void_p, c_int,
-    c_int, c_void_p, c_int,
-)  # fmt: skip
+
+
+class _Job(ctypes.Structure):
+    _fields_ = (
+        ("picture", Pixels),
+        ("level", c_double),
+        ("chain", c_void_p),
+        ("capacity", c_int64),
+        ("half", c_void_p),
+        ("radius", c_int32),
+        ("fewest", c_int32),
+        ("frame", c_int32),
+        ("answer", c_int32),
+        ("box", c_int32 * 4),
+        ("length", c_int64),
+        ("count", c_int64),
+        ("closed", c_int64),
+    )
+
+
+_find = Kernel("stackloft_solid_pieces", None, POINTER(_Job), c_int64, c_int)
 _chains = Scratch(np.int32, 2)
 
 
@@ -67,16 +86,40 @@ def solid_piece(values: NDArray[Any], level: float, cracks: Cracks) -> SolidPiec
     >>> found is None or (found.outline[0].tolist(), found.shape, found.pixels, found.open)
     ([14, 12], (3, 5), 15, True)
     """
-    follow, picture = _follow.here(), pixels_of(values)
-    if follow is None or picture is None:
+    return solid_pieces([(values, level)], cracks)[0]
+
+
+def solid_pieces(pictures: Sequence[tuple[NDArray[Any], float]], cracks: Cracks) -> list[SolidPiece | None]:
+    """Return the bodies of several pictures above their levels, as `solid_piece` does, in less time."""
+    find = _find.here()
+    seen = [pixels_of(values) for values, _ in pictures]
+    if find is None or None in seen:
+        return [None] * len(pictures)
+    room = _chains.rows(_LONGEST * len(pictures))
+    start, reach = address(room), address(cracks.reach)
+    step = _LONGEST * room.strides[0]
+    jobs = (_Job * len(pictures))(
+        *(
+            _Job(
+                picture,
+                level,
+                start + k * step,
+                _LONGEST,
+                reach,
+                len(cracks.reach) - 1,
+                cracks.fewest,
+                cracks.frame,
+            )
+            for k, (picture, (_, level)) in enumerate(zip(seen, pictures, strict=True))
+        )
+    )
+    find(jobs, len(jobs), THREADS)
+    return [_found(job, room[k * _LONGEST :]) for k, job in enumerate(jobs)]
+
+
+def _found(job: _Job, chain: NDArray[np.int32]) -> SolidPiece | None:
+    if job.answer != 1:
         return None
-    chain, box, numbers = _chains.rows(_LONGEST), np.empty(4, np.int32), np.empty(3, np.int64)
-    answer = follow(
-        byref(picture), level, address(chain), _LONGEST, address(box), address(numbers), cracks.frame,
-        len(cracks.reach) - 1, address(cracks.reach), cracks.fewest,
-    )  # fmt: skip
-    if answer != 1:
-        return None
-    top, left, rows, columns = box.tolist()
-    length, pixels, is_open = numbers.tolist()
-    return SolidPiece(chain[:length].copy(), (top, left), (rows, columns), pixels, bool(is_open))
+    top, left, rows, columns = job.box
+    outline = chain[: job.length].copy()
+    return SolidPiece(outline, (top, left), (rows, columns), job.count, not job.closed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -65,7 +65,7 @@ class SliceStack:
 
     decode: Callable[[int], Picture]
     """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads. It may
-    have attributes ``luminance`` and ``at_hand``, see there."""
+    have attributes ``luminance``, ``at_hand`` and ``prefetch``, see there."""
     names: tuple[str, ...]
     """(m) file name or slice label, for messages."""
     shape: tuple[int, int]
@@ -118,6 +118,13 @@ class SliceStack:
         """
         return bool(getattr(self.decode, "at_hand", False))
 
+    def prefetch(self, numbers: Sequence[int]) -> None:
+        """Let the decoder get slices ready together, where it can: each will be asked for once, and soon.
+
+        What becomes of those that cannot be decoded is told when they are asked for.
+        """
+        prefetch(self.decode, numbers)
+
     def placed(self, index: int, points: FloatArray) -> FloatArray:
         """Return points of slice `index` where they lie in the stack's plane coordinates.
 
@@ -167,3 +174,10 @@ def check_slice_stack(stack: SliceStack) -> None:
         raise InputError("slice positions must be finite and strictly increasing")
     if not (np.isfinite(stack.pixel_spacing).all() and (stack.pixel_spacing > 0).all()):
         raise InputError("pixel spacing must be positive", found=str(stack.pixel_spacing.min()))
+
+
+def prefetch(decode: Callable[[int], Picture], numbers: Sequence[int]) -> None:
+    """Let a decoder get slices ready together, where it can (`SliceStack.prefetch`)."""
+    own: Callable[[Sequence[int]], None] | None = getattr(decode, "prefetch", None)
+    if own is not None:
+        own(numbers)

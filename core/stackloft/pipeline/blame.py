@@ -90,6 +90,12 @@ class _Answerable:
         """As the decoder says."""
         return bool(getattr(self.decode, "at_hand", False))
 
+    @property
+    def prefetch(self) -> Callable[[Any], None] | None:
+        """The decoder's own; what fails there fails again when the slice is asked for."""
+        own: Callable[[Any], None] | None = getattr(self.decode, "prefetch", None)
+        return own
+
     def _checked(self, decode: Callable[[int], Any], index: int) -> Any:
         picture = blaming(self.loaded, decode, index, doing="decode")
         if not isinstance(picture, np.ndarray) or picture.shape[:2] != tuple(self.shape):

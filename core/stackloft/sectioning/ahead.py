@@ -22,6 +22,12 @@ microseconds; two threads that pass the interpreter's lock to and fro between th
 LARGE = 4_000_000
 """Pixels: of larger pictures no more are held than there are threads."""
 
+TOGETHER = 8
+"""Small slices worked on together: compiled kernels share them out among threads."""
+
+HELD = 4_000_000
+"""Bytes: slices whose fields take more are not held for others to come."""
+
 T = TypeVar("T")
 
 
@@ -41,6 +47,17 @@ def ahead_on(stack: SliceStack) -> int:
     if pixels < SMALL and stack.kind is SectionKind.SLAB:
         return 0
     return AHEAD if pixels < LARGE else 1
+
+
+def groups_of(count: int, size: int) -> list[range]:
+    """Return the numbers from 0 to `count` - 1 in groups of at most `size`.
+
+    Examples
+    --------
+    >>> groups_of(5, 2)
+    [range(0, 2), range(2, 4), range(4, 5)]
+    """
+    return [range(start, min(count, start + size)) for start in range(0, count, size)]
 
 
 def worked_ahead(count: int, work: Callable[[int], T], ahead: int = AHEAD) -> Iterator[T]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import cv2
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stackloft.model.arrays import BoolArray
 from stackloft.model.scale import scale_of_slices
 from stackloft.model.segmentation import SectionField, Segmentation
-from stackloft.model.slice_stack import Hints, Picture, SliceStack
+from stackloft.model.slice_stack import Hints, Picture, SliceStack, prefetch
 from stackloft.sectioning.kept_slices import KeptSlices
 from stackloft.sectioning.linked_pieces import LinkedPieces
 from stackloft.sectioning.slice_pieces import Corner
@@ -174,7 +174,7 @@ def cut_stack(stack: SliceStack, first: int, stop: int) -> SliceStack:
     kept = slice(first, stop)
     return replace(
         stack,
-        decode=_shifted(stack.decode, first),
+        decode=_Shifted(stack.decode, first),
         names=stack.names[kept],
         positions=stack.positions[kept],
         pixel_spacing=stack.pixel_spacing[kept],
@@ -184,8 +184,18 @@ def cut_stack(stack: SliceStack, first: int, stop: int) -> SliceStack:
     )
 
 
-def _shifted(decode: Callable[[int], Picture], first: int) -> Callable[[int], Picture]:
-    return lambda number: decode(number + first)
+@dataclass(frozen=True, slots=True)
+class _Shifted:
+    """The decoder of a part of a stack."""
+
+    decode: Callable[[int], Picture]
+    first: int
+
+    def __call__(self, number: int) -> Picture:
+        return self.decode(number + self.first)
+
+    def prefetch(self, numbers: Sequence[int]) -> None:
+        prefetch(self.decode, [number + self.first for number in numbers])
 
 
 def _shifted_hints(hints: Hints, first: int, stop: int) -> Hints:

@@ -14,7 +14,7 @@ from stackloft.model.notices import Notice
 from stackloft.model.reused_memory import memory_reused
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
-from stackloft.sectioning.ahead import THREADS, Behind, ahead_on, worked_ahead
+from stackloft.sectioning.ahead import HELD, THREADS, TOGETHER, Behind, ahead_on, groups_of, worked_ahead
 from stackloft.sectioning.limbs import with_limbs
 from stackloft.sectioning.loop_curves import remember_smooth
 from stackloft.sectioning.loop_numbers import said_links
@@ -26,10 +26,6 @@ from stackloft.sectioning.stack_hazards import stack_hazards
 from stackloft.sectioning.strays import without_strays
 from stackloft.sectioning.traced_slices import traced_slices
 
-TOGETHER = 8
-"""Slices traced together."""
-HELD = 4_000_000
-"""Bytes: slices whose fields take more are traced without waiting for others."""
 _NO_PICTURE: Picture = np.zeros((0, 0), np.uint8)
 _NAMED = 3  # slices named in a notice that stands for several
 
@@ -190,8 +186,14 @@ def decoded_ahead(
         picture = segmentation.stack.decode(index)
         return index, picture, segmentation.field_beside(index, picture)
 
+    ahead = ahead_on(segmentation.stack)
     with without_opencv_threads(), memory_reused():
-        yield from worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
+        if ahead:
+            yield from worked_ahead(len(segmentation), work, ahead)
+            return
+        for group in groups_of(len(segmentation), TOGETHER):
+            segmentation.stack.prefetch(group)
+            yield from map(work, group)
 
 
 def gathered(notices: Sequence[Notice]) -> tuple[Notice, ...]:

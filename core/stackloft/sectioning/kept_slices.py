@@ -14,13 +14,13 @@ Which pieces are the body is known only when all slices have been seen.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-from stackloft.model.slice_stack import Picture
+from stackloft.model.slice_stack import Picture, prefetch
 
 BUDGET = 240_000_000
 """Bytes that are kept at most."""
@@ -123,6 +123,10 @@ class KeptSlices:
         picture = self._decode(number)
         return picture, (slice(0, picture.shape[0]), slice(0, picture.shape[1]))
 
+    def prefetch(self, numbers: Sequence[int]) -> None:
+        """Have the decoder get those ready that are not kept."""
+        prefetch(self._decode, [number for number in numbers if number not in self._kept])
+
     def __call__(self, number: int) -> Picture:
         """Return the slice as it was kept, or decode it again."""
         kept = self._kept.get(number)
@@ -199,6 +203,10 @@ class Peeked:
     def at_hand(self) -> bool:
         """As the decoder says."""
         return bool(getattr(self._decode, "at_hand", False))
+
+    def prefetch(self, numbers: Sequence[int]) -> None:
+        """Have the decoder get those ready that have not been peeked at."""
+        prefetch(self._decode, [number for number in numbers if number not in self._seen])
 
     def peek(self, number: int) -> Picture:
         """Return the slice, and remember it for the next time it is asked for, within the budget."""

@@ -14,7 +14,7 @@ slice). Of a label map every label is a body, however near another, and its stra
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -27,14 +27,14 @@ from stackloft.model.notices import Notice
 from stackloft.model.reused_memory import memory_reused
 from stackloft.model.segmentation import Beyond, SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SliceStack
-from stackloft.sectioning.ahead import ahead_on, worked_ahead
+from stackloft.sectioning.ahead import TOGETHER, ahead_on, groups_of, worked_ahead
 from stackloft.sectioning.body_field import MARGIN, BodyField, cut_stack, enclosed, placed
 from stackloft.sectioning.cut_bodies import cut_apart
 from stackloft.sectioning.kept_slices import Keeper, KeptSlices
 from stackloft.sectioning.linked_pieces import LinkedPieces
 from stackloft.sectioning.object_notices import cut_notice, stray_notice
 from stackloft.sectioning.opencv_threads import without_opencv_threads
-from stackloft.sectioning.slice_look import SliceLook, framed_window, look_at
+from stackloft.sectioning.slice_look import SliceLook, framed_window, look_at_all
 from stackloft.sectioning.voids import VoidFinder, void_notice
 
 CRUMB = 0.02
@@ -128,13 +128,8 @@ def _linked(segmentation: Segmentation) -> _Linked:
     keeper = Keeper(kept)
     voxel = _voxel_volumes(segmentation.stack)
 
-    def work(index: int) -> tuple[Picture, SliceLook]:
-        picture = segmentation.stack.decode(index)
-        return picture, look_at(segmentation, picture, segmentation.field_of(index, picture))
-
     with without_opencv_threads(), memory_reused():
-        looks = worked_ahead(len(segmentation), work, ahead_on(segmentation.stack))
-        for index, (picture, look) in enumerate(looks):
+        for index, (picture, look) in enumerate(_looks(segmentation)):
             window = framed_window(look.pieces.shape, look.corner, KEPT, picture.shape)
             keeper.take(index, picture, window if len(look.sizes) else None)
             links.add(look.pieces, look.sizes * voxel[index], look.labels, look.corner, outline=look.outline)
@@ -144,6 +139,25 @@ def _linked(segmentation: Segmentation) -> _Linked:
                 outlines[index] = look.outline
     keeper.end()
     return _Linked(links, voids, kept, outlines)
+
+
+def _looks(segmentation: Segmentation) -> Iterator[tuple[Picture, SliceLook]]:
+    """Yield every slice with what it shows: large ones worked on ahead, small ones some at a time."""
+    stack = segmentation.stack
+    ahead = ahead_on(stack)
+    groups = groups_of(len(segmentation), 1 if ahead else TOGETHER)
+
+    def work(number: int) -> list[tuple[Picture, SliceLook]]:
+        group = groups[number]
+        if not ahead:
+            stack.prefetch(group)
+        pictures = [stack.decode(index) for index in group]
+        fields = [segmentation.field_of(index, own) for index, own in zip(group, pictures, strict=True)]
+        looks = look_at_all(segmentation, list(zip(pictures, fields, strict=True)))
+        return list(zip(pictures, looks, strict=True))
+
+    for found in worked_ahead(len(groups), work, ahead):
+        yield from found
 
 
 def _voxel_volumes(stack: SliceStack) -> FloatArray:

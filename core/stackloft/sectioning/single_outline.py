@@ -6,30 +6,35 @@ contact with the picture's. All others are traced by `tracing`, which gives the 
 
 from __future__ import annotations
 
-from stackloft.compiled.level_line import level_line
+from collections.abc import Sequence
+
+from stackloft.compiled.level_line import Border, level_lines
 from stackloft.compiled.solid_piece import solid_piece
 from stackloft.model.arrays import FloatArray, read_only
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
 from stackloft.sectioning.voids import CRACKS
 
 
-def single_outline(one: SliceToTrace, rules: TraceRules) -> FloatArray | None:
-    """Return the points (x, y) of a slice's one loop, (k, 2) mm; None where it is not so simple.
+def single_outlines(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[FloatArray | None]:
+    """Return the points (x, y) of each slice's one loop, (k, 2) mm; None where it is not so simple.
 
-    None also without compiled kernels.
+    None of all without compiled kernels.
     """
+    borders = [_border(one) for one in slices]
+    traced = iter(level_lines([one for one in borders if one is not None]))
+    found = [None if one is None else next(traced) for one in borders]
+    return [None if one is None or one[1] < rules.fewest_pixels else read_only(one[0]) for one in found]
+
+
+def _border(one: SliceToTrace) -> Border | None:
     section = one.section
     if section.local_levels is not None:
         return None
-    outline, (row, column) = section.outline, section.offset
-    if outline is None:
-        found = solid_piece(section.values, section.level, CRACKS)
-        if found is None:
-            return None
-        chain = found.outline
+    if section.outline is not None:
+        chain = section.outline - (section.offset[1], section.offset[0])
     else:
-        chain = outline - (column, row)
-    traced = level_line(section.values, section.level, section.noise, chain, section.offset, one.spacing)
-    if traced is None or traced[1] < rules.fewest_pixels:
-        return None
-    return read_only(traced[0])
+        solid = solid_piece(section.values, section.level, CRACKS)
+        if solid is None:
+            return None
+        chain = solid.outline
+    return Border(section.values, section.level, section.noise, chain, section.offset, one.spacing)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.compiled.solid_piece import SolidPiece, solid_piece
+from stackloft.compiled.solid_piece import SolidPiece, solid_pieces
 from stackloft.model.arrays import BoolArray, IntArray
 from stackloft.model.segmentation import SectionField, Segmentation, above
 from stackloft.model.slice_stack import Picture
@@ -37,12 +38,26 @@ class SliceLook:
     """Of `body` and `closed`."""
 
 
-def look_at(segmentation: Segmentation, picture: Picture, section: SectionField) -> SliceLook:
-    """Return one slice's pieces, their pixels and labels, and the background that they close in."""
-    if not segmentation.labels and section.local_levels is None:
-        solid = solid_piece(section.values, section.level, CRACKS)
-        if solid is not None and section.values.shape == picture.shape[:2]:
-            return _look_at_solid(section, solid)
+def look_at_all(
+    segmentation: Segmentation, slices: Sequence[tuple[Picture, SectionField]]
+) -> list[SliceLook]:
+    """Return the slices' pieces, their pixels and labels, and the background that they close in."""
+    quick = [not segmentation.labels and _shows_all(section, picture) for picture, section in slices]
+    alike = [(own.values, own.level) for (_, own), plain in zip(slices, quick, strict=True) if plain]
+    solids = iter(solid_pieces(alike, CRACKS))
+    found = [next(solids) if plain else None for plain in quick]
+    return [
+        _closer_look(segmentation, picture, section) if solid is None else _look_at_solid(section, solid)
+        for solid, (picture, section) in zip(found, slices, strict=True)
+    ]
+
+
+def _shows_all(section: SectionField, picture: Picture) -> bool:
+    """Return whether a field is of a whole slice, with one level."""
+    return section.local_levels is None and section.values.shape == picture.shape[:2]
+
+
+def _closer_look(segmentation: Segmentation, picture: Picture, section: SectionField) -> SliceLook:
     if segmentation.labels:
         (pieces, sizes, labels, corner), outline = _labelled_pieces(picture), None
         shown = pieces > 0

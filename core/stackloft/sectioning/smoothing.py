@@ -152,7 +152,7 @@ def _fitted_with(
     loops: Sequence[FloatArray], spacing: float, pixel: float, fewest: int = FEWEST
 ) -> list[FloatArray]:
     """Return closed loops as splines with such knots, by the compiled kernel where it can."""
-    fitted = [smooth_closed(points, spacing * pixel, STEP * pixel, fewest) for points in loops]
+    fitted = smooth_closed(loops, spacing * pixel, STEP * pixel, fewest)
     rest = [points for points, smooth in zip(loops, fitted, strict=True) if smooth is None]
     others = iter(
         _all_fitted([_Wrapped.of(points, spacing * pixel, STEP * pixel, fewest) for points in rest])

@@ -17,7 +17,7 @@ from stackloft.model.arrays import FloatArray, frozen_floats
 from stackloft.model.contour_stack import Loop
 from stackloft.model.notices import Notice
 from stackloft.model.segmentation import SectionField
-from stackloft.sectioning.single_outline import single_outline
+from stackloft.sectioning.single_outline import single_outlines
 from stackloft.sectioning.slice_lines import Grid, Line, SliceToTrace, SortedLines, TraceRules, sorted_lines
 from stackloft.sectioning.sub_pixel import LevelLine, points_of_lines
 from stackloft.sectioning.trace_notices import SIDES, border_notice, dropped_notice, filled_notice
@@ -88,7 +88,7 @@ def trace_fields(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[Trac
     InputError
         A slice shows nothing above its level; the first such one is named.
     """
-    quick = [single_outline(one, rules) for one in slices]
+    quick = single_outlines(slices, rules)
     rest = iter(_sorted_fields([one for one, own in zip(slices, quick, strict=True) if own is None], rules))
     return [next(rest) if own is None else TracedLoops((Loop(own),), at_border=(False,)) for own in quick]
 

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.compiled.smooth_curve import turns_somewhere
+from stackloft.compiled.smooth_curve import Turns, turns_somewhere
 from stackloft.model.arrays import BoolArray, FloatArray
 from stackloft.model.contour_stack import Loop
 from stackloft.sectioning.traced_corners import STEP, CornerRules, with_corners
@@ -63,12 +63,9 @@ def may_turn(loops: Sequence[Loop], pixels: Sequence[float], rules: CornerRules)
     """
     near, far = _lines(rules)
     shortest = 16 * rules.window  # others have shorter sides
-    least = float(np.cos(np.radians(rules.turn - _LESS)))
-    quick = [
-        turns_somewhere(loop.points, pixel, shortest, _WIDE, (near, far), least)
-        for loop, pixel in zip(loops, pixels, strict=True)
-    ]
-    if None not in quick:
+    turns = Turns(shortest, _WIDE, near, far, float(np.cos(np.radians(rules.turn - _LESS))))
+    quick = turns_somewhere([loop.points for loop in loops], pixels, turns)
+    if quick is not None:
         return np.array(quick, dtype=np.bool_)
     turning = np.ones(len(loops), dtype=np.bool_)
     ways = [_way(loop.points, pixel) for loop, pixel in zip(loops, pixels, strict=True)]

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.compiled.coverage import Covered, Rings, covered
+from stackloft.compiled.coverage import Covered, Rings, ToCover, covered_all
 from stackloft.geometry.disc_reach import disc_reach
 from stackloft_plugins.integrators.morphology import Mask, dilated, disc, eroded
 from stackloft_plugins.integrators.ring_levels import level_of, ring_values
-from stackloft_plugins.integrators.seen_slice import SeenSlice
+from stackloft_plugins.integrators.seen_slice import SeenSlice, show_all
 
 Beside = tuple[SeenSlice | None, SeenSlice | None]
 """The slices before and after."""
@@ -20,55 +22,62 @@ _FEW = 4
 """Innermost pixels of a thin body for their level to count."""
 
 
-def edge_zone(current: SeenSlice, beside: Beside, zone: int, rings: Rings | None = None) -> Covered:
-    """Return the counts and sums over a slice's edge zone, given its neighbours.
+@dataclass(frozen=True, slots=True, eq=False)
+class Neighboured:
+    """A slice and those beside it."""
 
-    Parameters
-    ----------
-    current : SeenSlice
-    beside : tuple
-        The slices before and after (the slice itself, where they do not matter); None where there is none.
-    zone : int
-        Pixels that it reaches to either side of the edge.
-    rings : Rings, optional
-        What is wanted of the rings beside the zone.
-    """
-    quick = _compiled(current, beside, zone, rings)
-    return _by_opencv(current, beside, zone, rings) if quick is None else quick
+    current: SeenSlice
+    beside: Beside
+    """The slices before and after (the slice itself, where they do not matter); None where there is none."""
+    rings: Rings | None = None
+    """What is wanted of the rings beside its edge zone."""
 
 
-def innermost(current: SeenSlice, beside: Beside) -> float:
+def edge_zones(slices: Sequence[Neighboured], zone: int) -> list[Covered]:
+    """Return the counts and sums over slices' edge zones, which reach `zone` pixels to either side."""
+    every = {id(seen): seen for one in slices for seen in (one.current, *one.beside) if seen is not None}
+    show_all(list(every.values()))
+    known = [_to_cover(one) for one in slices]
+    quick = iter(covered_all([one for one in known if one is not None], _reach(zone)))
+    found = [None if one is None else next(quick) for one in known]
+    return [
+        _by_opencv(one, zone) if covered is None else covered
+        for one, covered in zip(slices, found, strict=True)
+    ]
+
+
+def innermost(one: Neighboured) -> float:
     """Return the level of a thin body's innermost pixels; NaN of too few."""
-    deep = eroded(_common_united(current, beside)[0], disc(1)).view(np.bool_)
-    return level_of(current.section.relative_where(deep), _FEW)
+    deep = eroded(_common_united(one)[0], disc(1)).view(np.bool_)
+    return level_of(one.current.section.relative_where(deep), _FEW)
 
 
-def _compiled(current: SeenSlice, beside: Beside, zone: int, rings: Rings | None) -> Covered | None:
-    own, (first, last) = current.shown, (None if seen is None else seen.shown for seen in beside)
-    unknown = any(
-        seen is not None and shown is None for seen, shown in zip(beside, (first, last), strict=True)
-    )
-    if own is None or unknown:
-        return None
-    return covered(own, current.section.noise, (first, last), _reach(zone), rings)
+def _to_cover(one: Neighboured) -> ToCover | None:
+    """Return a slice for the compiled kernels; None where they cannot do it."""
+    seen = (one.current, *one.beside)
+    own, first, last = (None if each is None else each.shown for each in seen)
+    unknown = any(each is not None and each.shown is None for each in seen)
+    return None if own is None or unknown else ToCover(own, (first, last), one.rings)
 
 
-def _by_opencv(current: SeenSlice, beside: Beside, zone: int, rings: Rings | None) -> Covered:
-    common, united = _common_united(current, beside)
+def _by_opencv(one: Neighboured, zone: int) -> Covered:
+    section = one.current.section
+    common, united = _common_united(one)
     inside, near = eroded(common, disc(zone)), dilated(united, disc(zone))
     between = np.flatnonzero((inside ^ near).view(np.bool_))
-    edge = current.section.relative_at(between)
+    edge = section.relative_at(between)
     full = edge[common.ravel().take(between).view(np.bool_)]
-    values = None if rings is None else ring_values(current.section, inside, near, rings)
+    values = None if one.rings is None else ring_values(section, inside, near, one.rings)
     return Covered(
         cv2.countNonZero(inside), len(edge), float(edge.sum()), len(full), float(full.sum()), values
     )
 
 
-def _common_united(current: SeenSlice, beside: Beside) -> tuple[Mask, Mask]:
+def _common_united(one: Neighboured) -> tuple[Mask, Mask]:
     """Return where the body is on all three slices, and where it is on any."""
-    own = current.mask(current.window)
-    others = [np.zeros_like(own) if seen is None else seen.mask(current.window) for seen in beside]
+    window = one.current.window
+    own = one.current.mask(window)
+    others = [np.zeros_like(own) if seen is None else seen.mask(window) for seen in one.beside]
     return own & others[0] & others[1], own | others[0] | others[1]
 
 

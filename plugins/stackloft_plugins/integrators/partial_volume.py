@@ -15,6 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from stackloft.compiled.coverage import Covered
 from stackloft.contracts.options import option
 from stackloft.contracts.sink import Sink
 from stackloft.model.arrays import FloatArray
@@ -22,10 +23,11 @@ from stackloft.model.errors import InputError
 from stackloft.model.measurement import Integral
 from stackloft.model.segmentation import SectionField, Segmentation
 from stackloft.model.slice_stack import Picture, SectionKind
+from stackloft.sectioning.ahead import HELD, TOGETHER
 from stackloft.sectioning.clean_field import cleaned
 from stackloft.sectioning.slabs import slab_sum_at
 from stackloft.sectioning.streaming import streamed
-from stackloft_plugins.integrators.edge_zone import Beside, edge_zone, innermost
+from stackloft_plugins.integrators.edge_zone import Neighboured, edge_zones, innermost
 from stackloft_plugins.integrators.ring_levels import ring_levels, rings_of
 from stackloft_plugins.integrators.seen_slice import SeenSlice
 
@@ -92,7 +94,7 @@ class _SliceSums:
 
 
 class _CoverageSink:
-    """Sums each slice when the one after it is there."""
+    """Sums slices, some at a time, when the ones after them are there."""
 
     looks_at_pictures = False
 
@@ -103,8 +105,7 @@ class _CoverageSink:
         self._segmentation = segmentation
         stack = segmentation.stack
         self._slab = stack.kind is SectionKind.SLAB
-        self._before: SeenSlice | None = None
-        self._current: SeenSlice | None = None
+        self._row: list[SeenSlice | None] = [None]
         self._sums: list[_SliceSums] = []
         slices = len(segmentation.before) + len(segmentation) + len(segmentation.after)
         self._telling = max(1, slices // _TELLING) if self._slab else 1
@@ -118,7 +119,8 @@ class _CoverageSink:
         segmentation, stack = self._segmentation, self._segmentation.stack
         for beyond in segmentation.after:
             self._take(self._seen(beyond.field()))
-        self._take(None)
+        self._row.append(None)
+        self._sum_up()
         first, last = (
             [(x.position, x.pixel_area) for x in some] for some in (segmentation.before, segmentation.after)
         )
@@ -130,14 +132,32 @@ class _CoverageSink:
     def _seen(self, section: SectionField) -> SeenSlice:
         return SeenSlice(section if self._segmentation.binary else cleaned(section, labels=False))
 
-    def _take(self, seen: SeenSlice | None) -> None:
-        if self._current is not None and self._segmentation.binary:
-            self._sums.append(_counted(self._current))
-        elif self._current is not None:
-            beside = (self._before, seen) if self._slab else (self._current, self._current)
-            tells = len(self._sums) % self._telling == 0
-            self._sums.append(_sums(self._current, beside, self._zone, tells=tells))
-        self._before, self._current = self._current, seen
+    def _take(self, seen: SeenSlice) -> None:
+        """Take the next slice; those before it are summed up when there are enough of them."""
+        self._row.append(seen)
+        held = sum(one.section.values.nbytes for one in self._row if one is not None)
+        if len(self._row) == TOGETHER + 2 or held > HELD:
+            self._sum_up()
+
+    def _sum_up(self) -> None:
+        """Sum up all slices but the last, whose next one is not there, and the first, which has been."""
+        row, self._row = self._row, self._row[-2:]
+        threes = [
+            (before, current, after)
+            for before, current, after in zip(row, row[1:], row[2:], strict=False)
+            if current is not None
+        ]
+        if self._segmentation.binary:
+            self._sums += [_counted(current) for _, current, _ in threes]
+            return
+        slices = []
+        for number, (before, current, after) in enumerate(threes, len(self._sums)):
+            rings = rings_of(current.section) if number % self._telling == 0 else None
+            beside = (before, after) if self._slab else (current, current)
+            slices.append(Neighboured(current, beside, rings))
+        self._sums += [
+            _summed(one, own) for one, own in zip(slices, edge_zones(slices, self._zone), strict=True)
+        ]
 
     def _covered(self) -> FloatArray:
         """Return each slice's covered area in pixels."""
@@ -182,16 +202,12 @@ def _check_edge(filled: FloatArray, pixels: FloatArray, volume: float) -> None:
         )
 
 
-def _sums(current: SeenSlice, beside: Beside, zone: int, *, tells: bool) -> _SliceSums:
-    """Return what one slice adds, given its neighbours (itself, where they do not matter).
-
-    The grey levels are NaN unless it `tells` them.
-    """
-    found = edge_zone(current, beside, zone, rings_of(current.section) if tells else None)
+def _summed(one: Neighboured, found: Covered) -> _SliceSums:
+    """Return what one slice adds; the grey levels are NaN where its rings were not asked for."""
     body = background = near = _NAN
     if found.rings is not None:
         body, background = ring_levels(*found.rings)
-        near = innermost(current, beside) if np.isnan(body) else body
+        near = innermost(one) if np.isnan(body) else body
     return _SliceSums(
         found.inside, found.edge, found.grey, found.full, found.full_grey, body, background, near
     )

@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 
-from stackloft.compiled.coverage import Shown
+from stackloft.compiled.coverage import Shown, shown_all
 from stackloft.model.segmentation import SectionField
 from stackloft_plugins.integrators.morphology import Mask
 
 
-@dataclass(frozen=True, eq=False)
 class SeenSlice:
     """A slice's field, where it lies, and where it is body."""
 
-    section: SectionField
+    def __init__(self, section: SectionField) -> None:
+        self.section = section
+        self.shown: Shown | None = None
+        """The same for the compiled kernels, after `show_all`; None where they cannot read it."""
 
     @cached_property
     def body(self) -> Mask:
         """1 where the body is, on the section's crop."""
         return self.section.above().view(np.uint8)
-
-    @cached_property
-    def shown(self) -> Shown | None:
-        """The same for the compiled kernels, which need one level for all pixels."""
-        section = self.section
-        if section.local_levels is not None:
-            return None
-        return Shown.of(section.values, section.level, section.offset)
 
     def mask(self, window: tuple[int, int, int, int]) -> Mask:
         """Return 1 where the body is, on rows [0]..[2] and columns [1]..[3]."""
@@ -51,3 +45,11 @@ class SeenSlice:
         row, column = self.section.offset
         rows, columns = self.section.values.shape
         return row, column, row + rows, column + columns
+
+
+def show_all(slices: Sequence[SeenSlice]) -> None:
+    """Make slices ready for the compiled kernels, which need one level for all pixels."""
+    new = [seen for seen in slices if seen.shown is None and seen.section.local_levels is None]
+    fields = [(own.values, own.level, own.offset, own.noise) for own in (seen.section for seen in new)]
+    for seen, shown in zip(new, shown_all(fields) or (), strict=False):
+        seen.shown = shown

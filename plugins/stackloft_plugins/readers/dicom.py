@@ -13,6 +13,7 @@ Only the elements that place and scale the pixels are read; what is private stay
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -40,6 +41,7 @@ from stackloft_plugins.readers.dicom_series import (
     one_volume,
     series_of,
 )
+from stackloft_plugins.readers.dicom_together import plain_pictures
 from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.slab_notices import slab_notices
 from stackloft_plugins.readers.slice_geometry import Placed, place_slices
@@ -150,12 +152,20 @@ class DicomReader:
         )
 
 
-@dataclass(frozen=True, slots=True)
 class _Decoder:
-    frames: Series
+    """Decodes one frame, or gets some ready together."""
+
+    def __init__(self, frames: Series) -> None:
+        self.frames = frames
+        self._ready: dict[int, Picture] = {}
 
     def __call__(self, number: int) -> Picture:
-        return decode_frame(self.frames[number])
+        ready = self._ready.pop(number, None)
+        return decode_frame(self.frames[number]) if ready is None else ready
+
+    def prefetch(self, numbers: Sequence[int]) -> None:
+        """Read together those whose pixels lie in the files as they are."""
+        self._ready = plain_pictures({number: self.frames[number] for number in numbers})
 
     @property
     def at_hand(self) -> bool:

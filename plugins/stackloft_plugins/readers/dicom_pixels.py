@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.compiled.shift import shifted_in_place
 from stackloft.model.arrays import native, read_only
 from stackloft.model.errors import InputError
 from stackloft.model.slice_stack import Picture
@@ -94,17 +93,17 @@ def rescaled(stored: NDArray[Any], slope: float, intercept: float, *, own: bool 
 
 def _shifted(stored: NDArray[Any], shift: int, *, own: bool) -> NDArray[Any]:
     """Return whole numbers of at most 16 bits and `shift`, as int16 where that holds them."""
-    ends = shifted_in_place(stored, shift) if own else None
-    low, high = ends or (int(stored.min(initial=0)), int(stored.max(initial=0)))
-    narrow = min(low, 0) + shift >= -(2**15) and max(high, 0) + shift < 2**15
-    if ends is not None:
-        if narrow:
-            return stored.view(np.int16)  # uint16 that wraps round comes back by the shift
-        np.subtract(stored, np.array(shift & 0xFFFF, np.uint16).view(stored.dtype), out=stored)
-    if not narrow:
+    low, high = int(stored.min(initial=0)), int(stored.max(initial=0))
+    if not fits_short(low, high, shift):
         return stored.astype(np.int32) + np.int32(shift)
     short = stored.view(np.int16) if stored.dtype.itemsize == 2 else stored.astype(np.int16)
+    # uint16 that wraps round comes back by the shift
     return np.asarray(np.add(short, np.int16(shift), out=short if own else None))
+
+
+def fits_short(low: int, high: int, shift: int) -> bool:
+    """Return whether int16 holds values from `low` to `high`, and 0, with `shift` added."""
+    return min(low, 0) + shift >= -(2**15) and max(high, 0) + shift < 2**15
 
 
 def _stored(frame: Frame) -> tuple[NDArray[Any], Dataset | None]:

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bits.h"
+#include "threads.h"
 
 typedef struct {
     uint64_t *words; /* a mask's, as bits.h has them; NULL: there is no such slice */
@@ -14,8 +15,8 @@ typedef struct {
 enum { MOST_REACH = 16 };
 typedef struct {
     double *values; /* room for `room` values of the ring inside, then as much for the one outside */
-    int64_t *counts;
     int64_t room;
+    int64_t counts[2]; /* out */
     int32_t reach; /* pixels, of every `step`-th pixel alone */
     int32_t step;
 } rings;
@@ -108,7 +109,7 @@ INLINE int64_t taken(int kind, const pixels *picture, double level, const bits *
 }
 
 /* Take the field in the rings on either side of the edge zone, `reach` pixels wide in squares. */
-static int take_rings(const pixels *picture, double level, const bits *inside, const bits *near, const rings *to)
+static int take_rings(const pixels *picture, double level, const bits *inside, const bits *near, rings *to)
 {
     bits few[2] = {every(inside, to->step), every(near, to->step)}, other[2] = {{0}, {0}};
     int done = few[0].words && few[1].words && to->reach < MOST_REACH && (to->step == 1 || to->step == 2);
@@ -128,45 +129,65 @@ static int take_rings(const pixels *picture, double level, const bits *inside, c
     return done;
 }
 
-/* Write a picture's mask, rows · ⌈columns / 64⌉ words; 0 when memory is short. */
-EXPORT int stackloft_mask(const pixels *picture, double level, uint64_t *words)
+typedef struct {
+    pixels picture;
+    double level;
+    uint64_t *words; /* rows · ⌈columns / 64⌉: the body's mask */
+    int32_t done;    /* out: 0 when memory is short */
+} mask_job;
+
+static void mask(void *jobs, int64_t number)
 {
-    bits mask = bits_above(picture, level);
-    int done = mask.words != NULL;
-    if (done)
-        memcpy(words, mask.words, (size_t)mask.rows * (size_t)mask.width * sizeof(uint64_t));
-    free(mask.words);
-    return done;
+    mask_job *job = (mask_job *)jobs + number;
+    bits found = bits_above(&job->picture, job->level);
+    job->done = found.words != NULL;
+    if (found.words)
+        memcpy(job->words, found.words, (size_t)found.rows * (size_t)found.width * sizeof(uint64_t));
+    free(found.words);
 }
 
-/* Sum a slice up, given the slices before and after.
- *
- * own     the picture's mask at its level
- * half    reach of each row of the disc by which the zone is wide, from the middle one outwards
- * sums    out: pixels inside, in the edge zone, the zone's field, its pixels that are at most full, their field
- * ring    what is wanted of the rings beside the zone; NULL: nothing
- *
- * Returns 0 when memory or room is short.
- */
-EXPORT int stackloft_coverage(const pixels *picture, double level, const uint64_t *own, const beside *before,
-                              const beside *after, int radius, const int32_t *half, double *sums,
-                              const rings *ring)
+EXPORT void stackloft_masks(mask_job *jobs, int64_t count, int threads)
 {
+    for_each(mask, jobs, count, threads);
+}
+
+typedef struct {
+    pixels picture;
+    double level;
+    const uint64_t *words; /* the picture's mask */
+    beside others[2];      /* the slices before and after */
+    const int32_t *half;   /* reach of each row of the disc by which the zone is wide, from the middle one outwards */
+    int32_t radius;
+    int32_t done;   /* out: 0 when memory or room is short */
+    double sums[5]; /* out: pixels inside, in the edge zone, the zone's field, its pixels at most full, their field */
+    rings ring;     /* what is wanted of the rings beside the zone; without values: nothing */
+} cover_job;
+
+static void cover(void *jobs, int64_t number)
+{
+    cover_job *job = (cover_job *)jobs + number;
+    const pixels *picture = &job->picture;
     bits common = bits_new(picture->rows, picture->columns), united = bits_new(picture->rows, picture->columns);
     bits inside = {0}, near = {0};
     int done = common.words && united.words;
     if (done) {
         size_t size = (size_t)common.rows * (size_t)common.width * sizeof(uint64_t);
-        memcpy(common.words, own, size);
-        memcpy(united.words, own, size);
-        done = take_beside(before, &common, &united) && take_beside(after, &common, &united) &&
-               bits_eroded(&common, &inside, radius, half) && bits_dilated(&united, &near, radius, half);
+        memcpy(common.words, job->words, size);
+        memcpy(united.words, job->words, size);
+        done = take_beside(job->others, &common, &united) && take_beside(job->others + 1, &common, &united) &&
+               bits_eroded(&common, &inside, job->radius, job->half) &&
+               bits_dilated(&united, &near, job->radius, job->half);
     }
     if (done) {
-#define SUM_UP(KIND) sum_up(KIND, picture, level, &common, &inside, &near, sums)
+#define SUM_UP(KIND) sum_up(KIND, picture, job->level, &common, &inside, &near, job->sums)
         FOR_KIND(picture->kind, SUM_UP)
-        done = !ring || take_rings(picture, level, &inside, &near, ring);
+        done = !job->ring.values || take_rings(picture, job->level, &inside, &near, &job->ring);
     }
+    job->done = done;
     free(common.words), free(united.words), free(inside.words), free(near.words);
-    return done;
+}
+
+EXPORT void stackloft_coverage(cover_job *jobs, int64_t count, int threads)
+{
+    for_each(cover, jobs, count, threads);
 }

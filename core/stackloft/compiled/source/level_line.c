@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "pixels.h"
+#include "threads.h"
 
 enum { REACH = 2, FEWEST = 16, NEWTON_STEPS = 4 };
 #define BEYOND 0.25
@@ -201,29 +202,38 @@ static int64_t written(const crossing *list, int64_t count, int all, const int32
     return kept;
 }
 
-/* Trace the one outline of a slice.
- *
- * chain    border pixels (column, row) as numbered in the picture
- * first    row and column of the picture's first pixel in the slice
- * spacing  mm from row to row and from column to column
- * points   room for `capacity` points (x, y), mm
- * area     out: the outline's rough area, pixels²
- *
- * Returns how many points there are; -1 where the body is too near the border, or room or memory is short.
- */
-EXPORT int64_t stackloft_level_line(const pixels *picture, double level, const int32_t *chain, int64_t length,
-                                    const int32_t *first, const double *spacing, double *points,
-                                    int64_t capacity, double *area)
+typedef struct {
+    pixels picture;
+    double level;
+    const int32_t *chain; /* border pixels (column, row) as numbered in the picture */
+    int64_t length;
+    int32_t first[2];  /* row and column of the picture's first pixel in the slice */
+    double spacing[2]; /* mm from row to row and from column to column */
+    double *points;    /* room for `capacity` points (x, y), mm */
+    int64_t capacity;
+    int64_t count; /* out: points; -1 where the body is too near the border, or room or memory is short */
+    double area;   /* out: the outline's rough area, pixels² */
+} line_job;
+
+/* Trace the one outline of a slice. */
+static void trace(void *jobs, int64_t number)
 {
-    if (near_border(chain, length, picture))
-        return -1;
-    crossing *list = malloc((size_t)capacity * sizeof(crossing));
-    int64_t count = list ? crossings_of(chain, length, list, capacity) : -1;
+    line_job *job = (line_job *)jobs + number;
+    job->count = -1;
+    if (near_border(job->chain, job->length, &job->picture))
+        return;
+    crossing *list = malloc((size_t)job->capacity * sizeof(crossing));
+    int64_t count = list ? crossings_of(job->chain, job->length, list, job->capacity) : -1;
     if (count > 0) {
-        *area = 0.5 * twice_area(list, count);
-        int64_t across = placed(list, count, picture, level);
-        count = written(list, count, across < FEWEST / 2, first, spacing, points);
+        job->area = 0.5 * twice_area(list, count);
+        int64_t across = placed(list, count, &job->picture, job->level);
+        count = written(list, count, across < FEWEST / 2, job->first, job->spacing, job->points);
     }
+    job->count = count;
     free(list);
-    return count;
+}
+
+EXPORT void stackloft_level_lines(line_job *jobs, int64_t count, int threads)
+{
+    for_each(trace, jobs, count, threads);
 }

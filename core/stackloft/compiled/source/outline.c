@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "bits.h"
+#include "threads.h"
 
 enum { RIGHT, LEFT = 4 };
 /* Neighbours counter-clockwise as seen, from the right: columns and rows to them. */
@@ -168,27 +169,36 @@ static int surely_open(const bits *whole, const int32_t *box, int frame, int rad
     return open;
 }
 
+typedef struct {
+    pixels picture;
+    double level;
+    int32_t *chain; /* room for `capacity` border pixels (column, row), from the leftmost of the first row on */
+    int64_t capacity;
+    const int32_t *half; /* the closing disc's reach in each of its rows, from the middle one outwards */
+    int32_t radius, fewest, frame;
+    int32_t answer;                /* out */
+    int32_t box[4];                /* out: top, left, rows, columns */
+    int64_t length, count, closed; /* out: border pixels, body's pixels, whether it may close background in */
+} solid_job;
+
 /* Find the body of a slice where it is simple.
  *
- * chain     room for `capacity` border pixels (column, row), from the leftmost of the first row on
- * box       out: top, left, rows, columns
- * numbers   out: border pixels, body's pixels, whether it surely closes no background in (1; 0: not known)
- * half      the closing disc's reach in each of its rows, from the middle one outwards
- *
- * Returns 0 when nothing lies above the level, 1 when the body is one 4-connected piece without a hole,
- * nowhere held together by corners alone, and -1 when it is not so simple (or memory or `capacity` is short).
+ * Answers 0 when nothing lies above the level, 1 when the body is one 4-connected piece without a hole, nowhere
+ * held together by corners alone, and -1 when it is not so simple (or memory or `capacity` is short).
  */
-EXPORT int stackloft_solid_piece(const pixels *picture, double level, int32_t *chain, int64_t capacity,
-                                 int32_t *box, int64_t *numbers, int frame, int radius, const int32_t *half,
-                                 int fewest)
+static void find_solid(void *jobs, int64_t number)
 {
-    bits body = bits_above(picture, level);
+    solid_job *job = (solid_job *)jobs + number;
+    job->answer = -1;
+    bits body = bits_above(&job->picture, job->level);
     if (!body.words)
-        return -1;
-    border found = {chain, 0, capacity, 0, 0};
-    int64_t count, runs = runs_of(&body, box, &count);
-    int answer = runs ? -1 : 0;
-    if (runs) {
+        return;
+    border found = {job->chain, 0, job->capacity, 0, 0};
+    int32_t *box = job->box, frame = job->frame;
+    int64_t runs = runs_of(&body, box, &job->count);
+    if (!runs)
+        job->answer = 0;
+    else {
         const uint64_t *words = bits_row(&body, box[0]);
         int first = 0;
         while (!words[first])
@@ -196,13 +206,17 @@ EXPORT int stackloft_solid_piece(const pixels *picture, double level, int32_t *c
         first = 64 * first + __builtin_ctzll(words[first]);
         /* any other piece, or a hole, has edges to the left and right that this border does not pass */
         if (follow(&body, box[0], first, &found) && !found.pinched && found.beside == 2 * runs) {
-            numbers[0] = found.length, numbers[1] = count;
+            job->length = found.length;
             int apart = box[0] >= frame && box[1] >= frame && box[0] + box[2] + frame <= body.rows &&
                         box[1] + box[3] + frame <= body.columns;
-            numbers[2] = apart && surely_open(&body, box, frame, radius, half, fewest);
-            answer = 1;
+            job->closed = !(apart && surely_open(&body, box, frame, job->radius, job->half, job->fewest));
+            job->answer = 1;
         }
     }
     free(body.words);
-    return answer;
+}
+
+EXPORT void stackloft_solid_pieces(solid_job *jobs, int64_t count, int threads)
+{
+    for_each(find_solid, jobs, count, threads);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "pixels.h"
+#include "threads.h"
 
 enum { BUMPS = 4, POWERS = 7, ROUND = 4, OVERLAP = 10, FEWEST_SAMPLES = 16, SHORTEST = 12 };
 
@@ -164,32 +165,43 @@ static double wrap(wrapped *loop, double spacing, double step, double fewest, do
     return overlap;
 }
 
-/* Smooth a closed loop without corners.
- *
- * points   vertices, none of which repeats the one before
- * spacing  mm between knots; `step` mm between samples; at least `fewest` spans
- * out      room for `capacity` samples
- *
- * Returns the number of samples; 0 where the knots cannot be even (or memory or room is short).
- */
-EXPORT int64_t stackloft_smooth_closed(const double *points, int64_t length, double spacing, double step,
-                                       double fewest, double *out, int64_t capacity)
+typedef struct {
+    const double *points; /* vertices, none of which repeats the one before */
+    int64_t length;
+    double *out; /* room for `capacity` samples */
+    int64_t capacity;
+    int64_t count; /* out: samples; 0 where the knots cannot be even (or memory or room is short) */
+} smooth_job;
+
+typedef struct {
+    double spacing, step, fewest; /* between knots, between samples; spans that there are at least */
+    smooth_job *loops;
+} smooth_jobs;
+
+/* Smooth a closed loop without corners. */
+static void smooth(void *jobs, int64_t number)
 {
-    if (length < SHORTEST)
-        return 0;
-    double *places = malloc(4 * (size_t)length * sizeof(double));
+    const smooth_jobs *rules = jobs;
+    smooth_job *job = rules->loops + number;
+    job->count = 0;
+    if (job->length < SHORTEST)
+        return;
+    double *places = malloc(4 * (size_t)job->length * sizeof(double));
     if (!places)
-        return 0;
-    wrapped loop = {0, 0, 0, places, points, length, 0};
-    double sample_step, from = wrap(&loop, spacing, step, fewest, &sample_step);
+        return;
+    wrapped loop = {0, 0, 0, places, job->points, job->length, 0};
+    double sample_step, from = wrap(&loop, rules->spacing, rules->step, rules->fewest, &sample_step);
     size_t size = (size_t)loop.spans + BUMPS - 1;
     double(*bands)[BUMPS] = calloc(size, sizeof(*bands)), (*right)[2] = calloc(size, sizeof(*right));
-    int64_t count = 0;
-    if (bands && right && loop.samples <= capacity && normal_equations(&loop, bands, right) &&
+    if (bands && right && loop.samples <= job->capacity && normal_equations(&loop, bands, right) &&
         solve((int64_t)size, bands, right)) {
-        sampled(&loop, (const double(*)[2])right, sample_step, from, out);
-        count = loop.samples;
+        sampled(&loop, (const double(*)[2])right, sample_step, from, job->out);
+        job->count = loop.samples;
     }
     free(bands), free(right), free(places);
-    return count;
+}
+
+EXPORT void stackloft_smooth_closed(smooth_jobs *jobs, int64_t count, int threads)
+{
+    for_each(smooth, jobs, count, threads);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "pixels.h"
+#include "threads.h"
 
 typedef struct {
     double x, y;
@@ -62,32 +63,51 @@ static int turns(const place *samples, int64_t count, int near, int far, double 
     return 0;
 }
 
-/* Return 1 when the loop may turn sharply somewhere, or is shorter than `shortest` pixels; 0 when it surely
- * does not; -1 when memory is short. Samples lie `wide` pixels apart, lines are fitted to those `near` … `far`
- * samples off. */
-EXPORT int stackloft_may_turn(const double *points, int64_t length, double pixel, double shortest, double wide,
-                              int near, int far, double least_cosine)
+typedef struct {
+    const double *points;
+    int64_t length;
+    double pixel;
+    int32_t answer; /* out */
+} turn_job;
+
+typedef struct {
+    double shortest, wide, least_cosine; /* pixels; pixels between samples; of the angle of two lines */
+    int32_t near, far;                   /* samples off, of those that lines are fitted to */
+    turn_job *loops;
+} turn_jobs;
+
+/* Answer 1 when the loop may turn sharply somewhere, or is shorter than `shortest` pixels; 0 when it surely does
+ * not; -1 when memory is short. */
+static void look_for_corners(void *jobs, int64_t number)
 {
+    const turn_jobs *rules = jobs;
+    turn_job *job = rules->loops + number;
+    const double *points = job->points;
+    int64_t length = job->length;
+    job->answer = -1;
     double *along = malloc((size_t)(length + 1) * sizeof(double));
     if (!along)
-        return -1;
+        return;
     along[0] = 0.0;
     for (int64_t k = 0; k < length; k++) {
         const double *here = points + 2 * k, *next = points + 2 * (k + 1 < length ? k + 1 : 0);
-        double x = (next[0] - here[0]) / pixel, y = (next[1] - here[1]) / pixel;
+        double x = (next[0] - here[0]) / job->pixel, y = (next[1] - here[1]) / job->pixel;
         along[k + 1] = along[k] + sqrt(x * x + y * y);
     }
-    int64_t count = llrint(along[length] / wide);
-    int answer = 1;
-    if (along[length] >= shortest && count > near + far) {
+    int64_t count = llrint(along[length] / rules->wide);
+    if (along[length] >= rules->shortest && count > rules->near + rules->far) {
         place *samples = malloc(2 * (size_t)count * sizeof(place));
-        answer = -1;
         if (samples) {
-            resampled(points, length, along, pixel, count, samples);
-            answer = turns(samples, count, near, far, least_cosine, samples + count);
+            resampled(points, length, along, job->pixel, count, samples);
+            job->answer = turns(samples, count, rules->near, rules->far, rules->least_cosine, samples + count);
         }
         free(samples);
-    }
+    } else
+        job->answer = 1;
     free(along);
-    return answer;
+}
+
+EXPORT void stackloft_may_turn(turn_jobs *jobs, int64_t count, int threads)
+{
+    for_each(look_for_corners, jobs, count, threads);
 }
