@@ -46,7 +46,7 @@ def spline_tangents(nodes: FloatArray, points: FloatArray, starts: IntArray) -> 
     Examples
     --------
     >>> t = np.linspace(0.0, 1.0, 6)
-    >>> spline_tangents(t, (t**3)[:, None], np.array([0]))[:, 0].round(12)
+    >>> spline_tangents(t, (t**3)[:, None], np.array([0]))[:, 0].round(12) + 0.0
     array([0.  , 0.12, 0.48, 1.08, 1.92, 3.  ])
     """
     stops = np.append(starts[1:], len(nodes))
