@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from stackloft.compiled.ring_chain import solve_rings
 from stackloft.geometry.curve_stack import CurveStack
 
 FloatArray = NDArray[np.float64]
@@ -104,8 +105,6 @@ def _newton_step(
     fixed: BoolArray,
 ) -> FloatArray:
     """Return the Gauss-Newton step of E for all points, (m, N)."""
-    m, n = current.shape
-    bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
     pair = weight_pair[:, None]
     # evenness: residual gap / spacing - 1; a pull to the first guess
     share = weight_own[:, None] / spacing**2
@@ -120,19 +119,25 @@ def _newton_step(
     diagonal[:-1] += pair * squared[:-1]
     gradient[1:] += pair * _dots(rise, slope[1:])
     gradient[:-1] -= pair * _dots(rise, slope[:-1])
-    across = np.zeros((m, n))
+    across = np.zeros(current.shape)
     across[:-1] = -pair * _dots(slope[1:], slope[:-1])
     diagonal[fixed] += 1e12 * diagonal.max()
     gradient[fixed] = 0.0
+    step = solve_rings(diagonal, -stiff, across, gradient)
+    return -(_solved(diagonal, -stiff, across, gradient) if step is None else step)
+
+
+def _solved(diagonal: FloatArray, along: FloatArray, across: FloatArray, right: FloatArray) -> FloatArray:
+    """Return what `solve_rings` does, by LAPACK."""
+    m, n = diagonal.shape
+    bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
     bands[0] = diagonal.ravel()
-    along = np.zeros((2, m, n))
-    along[0, :, :-1], along[1, :, 0] = -stiff[:, :-1], -stiff[:, -1]
-    bands[1], bands[n - 1] = along.reshape(2, -1)
+    beside = np.zeros((2, m, n))
+    beside[0, :, :-1], beside[1, :, 0] = along[:, :-1], along[:, -1]
+    bands[1], bands[n - 1] = beside.reshape(2, -1)
     bands[n] = across.ravel()
-    solved = solveh_banded(
-        bands, gradient.ravel(), overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
-    )
-    return -np.asarray(solved).reshape(m, n)
+    solved = solveh_banded(bands, right.ravel(), overwrite_ab=True, lower=True, check_finite=False)
+    return np.asarray(solved).reshape(m, n)
 
 
 def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> FloatArray:
