@@ -6,6 +6,7 @@ import pytest
 from stackloft.compiled.library import kernels, without_kernels
 from stackloft.compiled.ring_chain import LONGEST, solve_rings
 from stackloft.geometry import correspondence
+from stackloft.geometry.curve_stack import fit_curves
 
 pytestmark = pytest.mark.skipif(kernels() is None, reason="no compiled kernels here")
 
@@ -45,3 +46,45 @@ def test_chains_that_are_not_positive_definite_or_too_long_are_left_to_lapack():
     assert solve_rings(*random_rings(rng, 2, LONGEST + 1)) is None
     with without_kernels():
         assert solve_rings(*random_rings(rng, 6, 8)) is None
+
+
+def random_loops(rng, count, fewest=3):
+    """Return closed loops of one stack, some with corners, at even steps, uneven and very uneven ones."""
+    loops, corners = [], []
+    for _ in range(count):
+        vertices = int(rng.integers(fewest, 400))
+        t = np.arange(vertices) / vertices
+        t = rng.choice([t, np.sort(rng.uniform(0.0, 1.0, vertices)), t**4])
+        t = 2.0 * np.pi * np.unique(t)
+        radius = 5.0 + 0.5 * np.cos(3.0 * t + rng.uniform(0.0, 6.0))
+        loops.append(np.column_stack([radius * np.cos(t) + 40.0, radius * np.sin(t) - 7.0]))
+        marks = rng.choice(len(t), int(rng.integers(0, 1 + min(len(t), 5))), replace=False)
+        corners.append(np.sort(marks) if rng.random() < 0.5 else np.empty(0, np.int64))
+    return loops, corners
+
+
+@pytest.mark.parametrize("flip", [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)])
+def test_points_and_slopes_on_curves_are_the_same_numbers(flip):
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        curves = fit_curves(*random_loops(rng, 12)).flipped(flip)
+        inside = (curves.knots[:-1] - np.floor(curves.knots[:-1]))[:40]
+        samples = np.concatenate([rng.uniform(-3.0, 3.0, 60), np.arange(65) / 64, inside])
+        across = np.arange(12)[:, None], samples[None, :]
+        listed = rng.integers(0, 12, 125), np.sort(rng.uniform(0.0, 1.0, 125))
+        at_knots = np.zeros(len(inside), np.int64), inside - curves.starts[0]
+        for section, s in (across, listed, at_knots):
+            found = curves.at(section, s)
+            with without_kernels():
+                reference = curves.at(section, s)
+            for own, other in zip(found, reference, strict=True):
+                assert np.array_equal(own, other)
+
+
+def test_what_is_no_section_or_no_number_is_told_as_numpy_tells_it():
+    curves = fit_curves(*random_loops(np.random.default_rng(3), 2))
+    with pytest.raises(IndexError):
+        curves.at(np.array([2]), np.zeros(1))
+    for s in (np.nan, np.inf):
+        with np.errstate(invalid="ignore"):
+            assert np.isnan(curves.at(np.array([1]), np.array([s]))[0]).all()

@@ -22,8 +22,8 @@ def solve_rings(
 ) -> FloatArray | None:
     """Return the solution of a symmetric positive definite system, (m, n).
 
-    None without compiled kernels, for rings of fewer than three or more than `LONGEST`, and where the matrix is
-    not positive definite.
+    None without compiled kernels, for rings of fewer than three or more than `LONGEST`, and where the
+    matrix is not positive definite.
 
     Parameters
     ----------
