@@ -7,6 +7,7 @@ import pytest
 
 from stackloft.compiled.library import kernels, without_kernels
 from stackloft.compiled.ring_chain import LONGEST, solve_rings
+from stackloft.compiled.slide_system import slide_system
 from stackloft.geometry import correspondence
 from stackloft.geometry.curve_stack import CurveStack, fit_curves
 
@@ -50,6 +51,24 @@ def test_chains_that_are_not_positive_definite_or_too_long_are_left_to_lapack():
     assert solve_rings(*random_rings(rng, 2, LONGEST + 1)) is None
     with without_kernels():
         assert solve_rings(*random_rings(rng, 6, 8)) is None
+
+
+@pytest.mark.parametrize(("rings", "around"), [(2, 3), (5, 9), (40, 33)])
+def test_systems_of_sliding_points_are_the_same_numbers(rings, around):
+    rng = np.random.default_rng(rings)
+    for _ in range(20):
+        first = np.sort(rng.uniform(0.0, 1.0, (rings, around)), axis=1) + rng.uniform(-2.0, 2.0)
+        current = first + rng.normal(size=first.shape) * 1e-3
+        on_curves = tuple(np.moveaxis(rng.normal(size=(2, 2, rings, around)), 1, -1))
+        fractions = current, first, correspondence._gaps(first)
+        weights = rng.uniform(0.1, 5.0, rings - 1), rng.uniform(0.1, 5.0, rings)
+        fixed = rng.random(first.shape) < 0.2
+        costs = correspondence.EVENNESS, correspondence.HOLD
+        found = slide_system(on_curves, fractions, weights, costs, (fixed, correspondence.HUGE))
+        for own, other in zip(
+            found, correspondence._system(on_curves, fractions, weights, fixed), strict=True
+        ):
+            np.testing.assert_allclose(own, other, rtol=1e-12, atol=1e-14 * abs(other[~fixed]).max())
 
 
 def random_loops(rng, count, fewest=3, power=4):
