@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from stackloft.compiled.ring_chain import solve_rings
+from stackloft.compiled.slide_system import slide_system
 from stackloft.geometry.curve_stack import CurveStack
 
 FloatArray = NDArray[np.float64]
@@ -26,6 +28,8 @@ EVENNESS = 10.0
 """λ: what uneven spacing costs against the slope of the columns."""
 HOLD = 0.3
 """Pull to the first guess, which keeps all columns from sliding round together."""
+HUGE = 1e12
+"""Of the largest coefficient, those of points that stay."""
 ITERATIONS = 4
 LEAST_SHARE = 0.25
 """Sections that lie close together count for spacing as if this fraction of the mean pitch apart, lest
@@ -55,12 +59,12 @@ def slide_points(curves: CurveStack, z: FloatArray, s: FloatArray, fixed: BoolAr
         return s
     section = np.arange(len(s))[:, None]
     spacing = _gaps(s)
-    weight_pair, weight_own = _weights(z)
+    weights = _weights(z)
     current = s
     for _ in range(ITERATIONS):
         point, slope = curves.at(section, current)
         point = point - curves.centroids[:, None, :]
-        step = _newton_step(point, slope, current, s, spacing, weight_pair, weight_own, fixed)
+        step = _newton_step((point, slope), (current, s, spacing), weights, fixed)
         largest = np.abs(step / spacing).max()
         current = _in_order(current, step, spacing)
         if largest < 5e-3:
@@ -94,18 +98,27 @@ def _dots(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _newton_step(
-    point: FloatArray,
-    slope: FloatArray,
-    current: FloatArray,
-    first: FloatArray,
-    spacing: FloatArray,
-    weight_pair: FloatArray,
-    weight_own: FloatArray,
+    on_curves: tuple[FloatArray, FloatArray],
+    fractions: tuple[FloatArray, FloatArray, FloatArray],
+    weights: tuple[FloatArray, FloatArray],
     fixed: BoolArray,
 ) -> FloatArray:
     """Return the Gauss-Newton step of E for all points, (m, N)."""
-    m, n = current.shape
-    bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
+    system = slide_system(on_curves, fractions, weights, (EVENNESS, HOLD), (fixed, HUGE))
+    if system is None:
+        system = _system(on_curves, fractions, weights, fixed)
+    step = solve_rings(*system)
+    return -(_solved(*system) if step is None else step)
+
+
+def _system(
+    on_curves: tuple[FloatArray, FloatArray],
+    fractions: tuple[FloatArray, FloatArray, FloatArray],
+    weights: tuple[FloatArray, FloatArray],
+    fixed: BoolArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return what `slide_system` does, all points at once."""
+    (point, slope), (current, first, spacing), (weight_pair, weight_own) = on_curves, fractions, weights
     pair = weight_pair[:, None]
     # evenness: residual gap / spacing - 1; a pull to the first guess
     share = weight_own[:, None] / spacing**2
@@ -120,19 +133,24 @@ def _newton_step(
     diagonal[:-1] += pair * squared[:-1]
     gradient[1:] += pair * _dots(rise, slope[1:])
     gradient[:-1] -= pair * _dots(rise, slope[:-1])
-    across = np.zeros((m, n))
+    across = np.zeros(current.shape)
     across[:-1] = -pair * _dots(slope[1:], slope[:-1])
-    diagonal[fixed] += 1e12 * diagonal.max()
+    diagonal[fixed] += HUGE * diagonal.max()
     gradient[fixed] = 0.0
+    return diagonal, -stiff, across, gradient
+
+
+def _solved(diagonal: FloatArray, along: FloatArray, across: FloatArray, right: FloatArray) -> FloatArray:
+    """Return what `solve_rings` does, by LAPACK."""
+    m, n = diagonal.shape
+    bands = np.zeros((m * n, n + 1)).T  # as LAPACK wants it, so that nothing is copied
     bands[0] = diagonal.ravel()
-    along = np.zeros((2, m, n))
-    along[0, :, :-1], along[1, :, 0] = -stiff[:, :-1], -stiff[:, -1]
-    bands[1], bands[n - 1] = along.reshape(2, -1)
+    beside = np.zeros((2, m, n))
+    beside[0, :, :-1], beside[1, :, 0] = along[:, :-1], along[:, -1]
+    bands[1], bands[n - 1] = beside.reshape(2, -1)
     bands[n] = across.ravel()
-    solved = solveh_banded(
-        bands, gradient.ravel(), overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
-    )
-    return -np.asarray(solved).reshape(m, n)
+    solved = solveh_banded(bands, right.ravel(), overwrite_ab=True, lower=True, check_finite=False)
+    return np.asarray(solved).reshape(m, n)
 
 
 def _in_order(current: FloatArray, step: FloatArray, spacing: FloatArray) -> FloatArray:

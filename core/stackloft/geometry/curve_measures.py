@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.geometry.turn_table import cosine_and_sine
+from stackloft.compiled.curve_figures import curve_figures
+from stackloft.geometry.turn_table import COSINES, SINES, cosine_and_sine
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,15 +48,35 @@ def curve_measures(
     first : (m + 1,) int array
         First segment of each curve; the fewest decide the rule, see `MANY`.
     """
+    rule = _gauss(2 if np.diff(first).min() >= MANY else 4)
+    found = curve_figures((p0, p1, d0, d1), first, rule, (COSINES, SINES))
+    figures, fractions = _figures(p0, p1, d0, d1, first, rule) if found is None else found
+    lengths, areas, straight, *arms, real, imaginary = figures
+    starts = -np.arctan2(imaginary, real) / (2.0 * np.pi)
+    return CurveMeasures(lengths, areas, straight, (p0[:, first[:-1]] + arms).T, starts, fractions)
+
+
+@cache
+def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """Return Gauss's places from 0 to 1 and weights; they are the eigenvalues of a matrix, found once."""
+    nodes, weights = (0.5 * each for each in np.polynomial.legendre.leggauss(count))
+    return nodes + 0.5, weights
+
+
+def _figures(
+    p0: FloatArray,
+    p1: FloatArray,
+    d0: FloatArray,
+    d1: FloatArray,
+    first: IntArray,
+    rule: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray]:
+    """Return what `curve_figures` does, all segments at once."""
     counts = np.diff(first)
-    nodes, weights = (
-        0.5 * each for each in np.polynomial.legendre.leggauss(2 if counts.min() >= MANY else 4)
-    )
-    origin = p0[:, first[:-1]]
-    begin = [np.repeat(each, counts) for each in origin]
+    begin = [np.repeat(each, counts) for each in p0[:, first[:-1]]]
     doubled, moments = np.zeros_like(p0[0]), np.zeros_like(p0)
     points = []
-    for t, weight in zip(nodes + 0.5, weights, strict=True):
+    for t, weight in zip(*rule, strict=True):
         (x, along), (y, up) = (along_cubics(p0[k], p1[k], d0[k], d1[k], t) for k in (0, 1))
         x -= begin[0]
         y -= begin[1]
@@ -81,8 +103,7 @@ def curve_measures(
         coefficient[0] += speed * (right * cosine + up * sine)
         coefficient[1] += speed * (up * cosine - right * sine)
     real, imaginary = np.add.reduceat(coefficient, first[:-1], axis=1)
-    starts = -np.arctan2(imaginary, real) / (2.0 * np.pi)
-    return CurveMeasures(lengths, areas, straight, (origin + arms).T, starts, fraction)
+    return np.stack([lengths, areas, straight, *arms, real, imaginary]), fraction
 
 
 def _length(x: FloatArray, y: FloatArray) -> FloatArray:

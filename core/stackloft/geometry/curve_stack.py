@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.on_curves import on_curves
 from stackloft.geometry.curve_measures import CurveMeasures, along_cubics, curve_measures
 from stackloft.geometry.hermite_segments import segment_tangents
 
@@ -74,6 +75,12 @@ class CurveStack:
         derivative : (..., 2) array
             dP/ds, mm; its length is close to the perimeter.
         """
+        planes = on_curves(self, section, s)
+        point, slope = np.moveaxis(self._planes(section, s) if planes is None else planes, 1, -1)
+        return point, slope
+
+    def _planes(self, section: IntArray, s: FloatArray) -> FloatArray:
+        """Return what `on_curves` does, all samples at once."""
         turns = s + self.starts[section]
         g = turns - np.floor(turns) + section
         # rounding can carry g to the next section's first knot: hold it to its own section
@@ -89,8 +96,7 @@ class CurveStack:
             )
             planes[0, k], along = along_cubics(p0, p1, d0, d1, x)
             np.divide(along, span, out=planes[1, k])
-        point, slope = np.moveaxis(planes, 1, -1)
-        return point, slope
+        return planes
 
     def flipped(self, flip: tuple[float, float]) -> CurveStack:
         """Return the curves with x and y multiplied by 1 or -1, counter-clockwise again.

@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stackloft.compiled.arc_tangents import arc_tangents
 from stackloft.geometry.arc_splines import WRAP, spline_tangents
 
 FloatArray = NDArray[np.float64]
@@ -45,6 +46,12 @@ def segment_tangents(
     True
     """
     arcs = _arcs(np.diff(first), corners)
+    found = arc_tangents(planes, first, arcs)
+    return _all_tangents(planes, first, arcs) if found is None else found
+
+
+def _all_tangents(planes: FloatArray, first: IntArray, arcs: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return what `arc_tangents` does, all arcs at once."""
     owner, begin, nodes, lead = arcs.T
     starts = np.cumsum(nodes) - nodes
     vertex = np.arange(nodes.sum()) + np.repeat(begin - starts, nodes)

@@ -13,7 +13,8 @@ FloatArray = NDArray[np.float64]
 ENTRIES = 1024
 """Of the table: no angle is farther than 0.0031 from one, where the series' next terms are below 1e-18."""
 _ANGLES = 2.0 * np.pi * np.arange(ENTRIES + 1) / ENTRIES
-_COSINES, _SINES = np.cos(_ANGLES), np.sin(_ANGLES)
+COSINES, SINES = np.cos(_ANGLES), np.sin(_ANGLES)
+"""Of the entries' angles, the whole turn too."""
 
 
 def cosine_and_sine(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -44,7 +45,7 @@ def cosine_and_sine(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
     square *= 1.0 / 120.0 * square - 1.0 / 6.0
     square += 1.0
     rest *= square
-    cosine, sine = _COSINES.take(entry), _SINES.take(entry)
+    cosine, sine = COSINES.take(entry), SINES.take(entry)
     turned = cosine * near
     turned -= sine * rest
     sine *= near

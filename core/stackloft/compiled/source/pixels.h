@@ -11,9 +11,10 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-/* Loops over whole masks, compiled once more for processors with wide registers, which choose at run time. */
+/* Loops compiled once more for processors with wide registers, which choose at run time. By the feature: by
+ * `arch=haswell` only processors of that very generation choose it, not its successors. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
-#define TUNED __attribute__((target_clones("arch=haswell", "default")))
+#define TUNED __attribute__((target_clones("avx2", "default")))
 #else
 #define TUNED
 #endif
