@@ -85,7 +85,7 @@ def test_patches_integrate_alike_however_they_lie_in_memory(lead):
     assert volume_and_area(back, origin) == pytest.approx(volume_and_area(patches, origin), rel=1e-11)
     assert volume_and_area(patches, origin)[1] == pytest.approx(patch_areas(patches).sum(), rel=1e-12)
     at = np.array([0.0, 0.3, 1.0])
-    expected = np.einsum("ak,...kld,bl->...abd", bernstein(at[:2]), patches, bernstein(at))
+    expected = np.einsum("ai,...ijx,bj->...abx", bernstein(at[:2]), patches, bernstein(at))
     assert evaluate(back, bernstein(at[:2]), bernstein(at)) == pytest.approx(expected, abs=1e-13)
 
 
