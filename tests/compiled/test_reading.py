@@ -5,6 +5,7 @@ import pytest
 
 from stackloft.compiled.library import kernels, without_kernels
 from stackloft.compiled.reading import Part, read_parts
+from stackloft.sectioning.ahead import ahead_on
 from stackloft.testing import phantoms
 from stackloft_plugins.readers.dicom import DicomReader
 from stackloft_plugins.readers.dicom_pixels import fits_short
@@ -61,3 +62,14 @@ def test_slices_got_ready_together_are_those_decoded_one_by_one(tmp_path):
     with without_kernels():
         stack.prefetch(range(5))
     assert not stack.decode._ready
+
+
+@pytest.mark.parametrize(("syntax", "plain"), [("explicit", True), ("rle", False)])
+def test_compressed_slices_are_kept_and_worked_on_ahead_plain_ones_are_at_hand(tmp_path, syntax, plain):
+    scans = phantoms.Scans(form="dicom", sections=5, pixel_size=1.0, syntax=syntax)
+    scans.write(phantoms.make("potato", seed=2), tmp_path)
+    stack = DicomReader().read(tmp_path)
+    assert (stack.at_hand, stack.slow) == (plain, not plain)
+    assert bool(ahead_on(stack)) == (not plain)
+    stack.prefetch(range(5))
+    assert bool(stack.decode._ready) == plain

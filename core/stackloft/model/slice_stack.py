@@ -65,7 +65,7 @@ class SliceStack:
 
     decode: Callable[[int], Picture]
     """Slice number (from 0) to picture; decodes that slice alone; safe to call from several threads. It may
-    have attributes ``luminance``, ``at_hand`` and ``prefetch``, see there."""
+    have attributes ``luminance``, ``at_hand``, ``slow`` and ``prefetch``, see there."""
     names: tuple[str, ...]
     """(m) file name or slice label, for messages."""
     shape: tuple[int, int]
@@ -117,6 +117,14 @@ class SliceStack:
         much as reading them once more.
         """
         return bool(getattr(self.decode, "at_hand", False))
+
+    @property
+    def slow(self) -> bool:
+        """Whether the decoder says that a slice takes milliseconds in which other threads may work.
+
+        So it is with compressed pixels; slices of photographs and large ones are taken to be slow anyway.
+        """
+        return bool(getattr(self.decode, "slow", False))
 
     def prefetch(self, numbers: Sequence[int]) -> None:
         """Let the decoder get slices ready together, where it can: each will be asked for once, and soon.

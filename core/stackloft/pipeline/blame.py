@@ -91,6 +91,11 @@ class _Answerable:
         return bool(getattr(self.decode, "at_hand", False))
 
     @property
+    def slow(self) -> bool:
+        """As the decoder says."""
+        return bool(getattr(self.decode, "slow", False))
+
+    @property
     def prefetch(self) -> Callable[[Any], None] | None:
         """The decoder's own; what fails there fails again when the slice is asked for."""
         own: Callable[[Any], None] | None = getattr(self.decode, "prefetch", None)

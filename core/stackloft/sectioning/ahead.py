@@ -16,8 +16,9 @@ AHEAD = 3
 """Slices worked on before they are asked for; with the one in hand, the pictures in memory."""
 
 SMALL = 700_000
-"""Pixels: a scan's slices of fewer are worked on one after the other. Each takes some hundred calls of a few
-microseconds; two threads that pass the interpreter's lock to and fro between them take longer than one."""
+"""Pixels: a scan's slices of fewer are worked on one after the other, unless they are slow to decode. Each
+takes some hundred calls of a few microseconds; two threads that pass the interpreter's lock to and fro
+between them take longer than one."""
 
 LARGE = 4_000_000
 """Pixels: of larger pictures no more are held than there are threads."""
@@ -44,7 +45,7 @@ def ahead_on(stack: SliceStack) -> int:
     (0, 3, 1)
     """
     pixels = stack.shape[0] * stack.shape[1]
-    if pixels < SMALL and stack.kind is SectionKind.SLAB:
+    if pixels < SMALL and stack.kind is SectionKind.SLAB and not stack.slow:
         return 0
     return AHEAD if pixels < LARGE else 1
 

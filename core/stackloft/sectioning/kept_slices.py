@@ -204,6 +204,11 @@ class Peeked:
         """As the decoder says."""
         return bool(getattr(self._decode, "at_hand", False))
 
+    @property
+    def slow(self) -> bool:
+        """As the decoder says."""
+        return bool(getattr(self._decode, "slow", False))
+
     def prefetch(self, numbers: Sequence[int]) -> None:
         """Have the decoder get those ready that have not been peeked at."""
         prefetch(self._decode, [number for number in numbers if number not in self._seen])

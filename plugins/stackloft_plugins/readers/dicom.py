@@ -165,6 +165,11 @@ class _Decoder:
         ready = self._ready.pop(number, None)
         return decode_frame(self.frames[number]) if ready is None else ready
 
+    @property
+    def slow(self) -> bool:
+        """Whether some pixels are compressed."""
+        return any(frame.samples_at is None for frame in self.frames)
+
     def prefetch(self, numbers: Sequence[int]) -> None:
         """Read together those whose pixels lie in the files as they are."""
         self._ready = plain_pictures({number: self.frames[number] for number in numbers})
