@@ -127,3 +127,10 @@ def test_two_sections_are_enough():
 def test_bad_ends_are_refused(text):
     with pytest.raises(UsageError):
         End.parse_pair(text)
+
+
+@pytest.mark.parametrize("rounding", [-1e-13, 0.0, 1e-13])
+def test_a_cut_cone_closes_at_its_apex_whichever_way_the_rounding_goes(rounding):
+    depth = np.array([0.0, 2.0, 4.0])
+    areas = (10.0 + depth) ** 2 * [1.0, 1.0 + rounding, 1.0]
+    assert distance_to_end(areas, depth) == pytest.approx(10.0, rel=1e-5)

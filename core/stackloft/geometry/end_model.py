@@ -24,6 +24,8 @@ SHAPES = (2.0 / 3.0, 4.0 / 3.0)
 PARABOLA = 3
 BLUNT = 0.5
 """Length of the bluntest cap of a limb, in lengths of a round one."""
+TOUCHING = 1e-9
+"""Of b², a discriminant that is zero but for rounding: a cone's areas only touch zero at its apex."""
 FARTHEST = 1e6
 """Times the depth of the sections looked at beyond which nothing closes."""
 
@@ -67,6 +69,8 @@ def _positive_roots(c: float, b: float, a: float) -> list[float]:
     if abs(c) * a <= 1e-14 * b * b:
         return [-a / b] if b < 0 else []
     discriminant = b * b - 4.0 * a * c
+    if abs(discriminant) < TOUCHING * b * b:
+        discriminant = 0.0
     if discriminant < 0.0:
         return []
     half = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
@@ -115,7 +119,10 @@ def guess_end(
     lengths = [float(np.clip(root or seen + 0.5 * pitch, seen, furthest)) for root in roots]
     low, high = min(lengths), max(lengths)
     tip = distance_to_end(areas, depth, TIP)
-    if tip is not None and seen <= tip <= furthest and _is_tip(areas, depth):
+    beyond = furthest * (
+        1.0 + TOUCHING
+    )  # an end just one pitch away is there, whichever way the rounding goes
+    if tip is not None and seen <= tip <= beyond and _is_tip(areas, depth):
         reason = "the square root of the area runs straight to zero"
         return EndGuess(tip, True, reason, min(low, tip), tip)
     if limb is not None and seen <= limb <= furthest:
@@ -125,7 +132,7 @@ def guess_end(
     root = roots[-1]
     if root is None:
         reason = "the areas do not close, half a pitch was assumed"
-    elif root > furthest:
+    elif root > beyond:
         reason = "the areas close later than one pitch, one pitch was assumed"
         low = min(low, seen + 0.5 * pitch)
     elif len(areas) < PARABOLA:
