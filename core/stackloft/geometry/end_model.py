@@ -119,9 +119,7 @@ def guess_end(
     lengths = [float(np.clip(root or seen + 0.5 * pitch, seen, furthest)) for root in roots]
     low, high = min(lengths), max(lengths)
     tip = distance_to_end(areas, depth, TIP)
-    beyond = furthest * (
-        1.0 + TOUCHING
-    )  # an end just one pitch away is there, whichever way the rounding goes
+    beyond = furthest * (1.0 + TOUCHING)  # what ends just one pitch away does so however it is rounded
     if tip is not None and seen <= tip <= beyond and _is_tip(areas, depth):
         reason = "the square root of the area runs straight to zero"
         return EndGuess(tip, True, reason, min(low, tip), tip)
