@@ -45,7 +45,34 @@ static inline uint64_t gathered(const uint8_t *bytes)
         }                                                                                            \
     }
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+
+/* A scan's usual kind, sixteen pixels at a time. */
+static void row_above_int16(const char *from, int columns, int16_t level, uint64_t *words)
+{
+    const int16_t *at = (const int16_t *)from;
+    const __m128i limit = _mm_set1_epi16(level);
+    int column = 0;
+    for (; column + 64 <= columns; column += 64, at += 64) {
+        uint64_t word = 0;
+        for (int k = 0; k < 64; k += 16) {
+            __m128i first = _mm_cmpgt_epi16(_mm_loadu_si128((const __m128i *)(at + k)), limit);
+            __m128i second = _mm_cmpgt_epi16(_mm_loadu_si128((const __m128i *)(at + k + 8)), limit);
+            word |= (uint64_t)(uint32_t)_mm_movemask_epi8(_mm_packs_epi16(first, second)) << k;
+        }
+        *words++ = word;
+    }
+    if (column < columns) {
+        uint64_t word = 0;
+        for (int k = 0; column + k < columns; k++)
+            word |= (uint64_t)(at[k] > level) << k;
+        *words = word;
+    }
+}
+#else
 ROW_ABOVE(row_above_int16, int16_t)
+#endif
 ROW_ABOVE(row_above_uint16, uint16_t)
 ROW_ABOVE(row_above_uint8, uint8_t)
 ROW_ABOVE(row_above_int8, int8_t)
