@@ -2,9 +2,10 @@
 
 Every contestant measures the same DICOM files in a child process of its own, one after the other, and is
 timed there with its imports done and the files in the system's cache; memory is what its peak lies above its
-imports. Figures are wall seconds of one run and processor seconds, as machines are shared.
+imports. pydicom and stackloft take turns, as machines are shared and change their speed: medians are printed, of
+the ratios, which are taken pair by pair, the least and the greatest too.
 
-    .venv/bin/python benchmarks/scan_speed.py [--slices 512] [--syntax explicit]
+    .venv/bin/python benchmarks/scan_speed.py [--slices 512] [--syntax explicit] [--rounds 7] [--no-peers]
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
+from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command `stackloft` has it; for all contestants
 
@@ -148,11 +151,30 @@ def in_child(name: str, folder: Path) -> None:
     print(json.dumps({**taken, "memory": peak() - before, "said": said}))
 
 
+def measured(name: str, folder: Path) -> dict[str, Any]:
+    """Run one contestant in a process of its own; return what it printed."""
+    command = [sys.executable, __file__, "--child", name, "--folder", str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return dict(json.loads(done.stdout.splitlines()[-1]))
+
+
+def line(name: str, rows: list[dict[str, Any]], bases: list[float]) -> str:
+    """Return a line of the table: medians, and the ratios to pydicom's time, pair by pair."""
+    wall, processor, memory = (median(row[key] for row in rows) for key in ("wall", "processor", "memory"))
+    ratios = [row["wall"] / base for row, base in zip(rows, bases, strict=True)]
+    return (
+        f"{name:40s} {wall:6.2f} s ({median(ratios):5.2f} ×, {min(ratios):.2f} to {max(ratios):.2f})  "
+        f"processor {processor:6.2f} s  peak +{memory:.0f} MB  {rows[0]['said']}"
+    )
+
+
 def main() -> None:
     """Write the files, run every contestant on them, print a table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--slices", type=int, default=512)
     parser.add_argument("--syntax", default="explicit")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--no-peers", action="store_true")
     parser.add_argument("--child")
     parser.add_argument("--folder", type=Path)
     given = parser.parse_args()
@@ -167,16 +189,13 @@ def main() -> None:
         for path in sorted(folder.iterdir())[given.slices // 3 : given.slices // 3 + 12]:
             (few / path.name).symlink_to(path)
         print(f"{given.slices} slices of {SIDE}², {given.syntax}; the body has {truth:.0f} mm³")
-        base = 0.0
-        for name in CONTESTANTS:
-            command = [sys.executable, __file__, "--child", name, "--folder", str(folder)]
-            done = subprocess.run(command, capture_output=True, text=True, check=True)
-            row = json.loads(done.stdout.splitlines()[-1])
-            base = base or row["wall"]
-            print(
-                f"{name:40s} {row['wall']:6.2f} s ({row['wall'] / base:5.2f} ×)  "
-                f"processor {row['processor']:6.2f} s  peak +{row['memory']:.0f} MB  {row['said']}"
-            )
+        first, second, *peers = CONTESTANTS
+        turns = [(measured(first, folder), measured(second, folder)) for _ in range(given.rounds)]
+        bases = [base["wall"] for base, _ in turns]
+        print(line(first, [base for base, _ in turns], bases))
+        print(line(second, [own for _, own in turns], bases))
+        for name in [] if given.no_peers else peers:
+            print(line(name, [measured(name, folder)], [median(bases)]))
 
 
 if __name__ == "__main__":
