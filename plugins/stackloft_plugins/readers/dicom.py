@@ -41,7 +41,6 @@ from stackloft_plugins.readers.dicom_series import (
     one_volume,
     series_of,
 )
-from stackloft_plugins.readers.dicom_sniff import heads_remembered
 from stackloft_plugins.readers.dicom_together import plain_pictures
 from stackloft_plugins.readers.scan_scale import CALIBRATION, with_scale
 from stackloft_plugins.readers.slab_notices import slab_notices
@@ -106,9 +105,8 @@ class DicomReader:
             Damaged files; no position; missing, duplicate or mixed slices; several volumes at the same
             places; a mosaic; no decoder. Files, what was found and what was expected are named.
         """
-        with heads_remembered():
-            pictures, drawn = without_objects(dicom_files(path))
-            every = series_of(list(read_frames(pictures, keep_identifiers=self.keep_identifiers)))
+        pictures, drawn = without_objects(dicom_files(path))
+        every = series_of(list(read_frames(pictures, keep_identifiers=self.keep_identifiers)))
         chosen, several = choose_series(every, self.series, str(path))
         shaped, left_out = one_shape(chosen, leave_out=self.leave_out)
         frames, one = one_volume(shaped, self.volume)

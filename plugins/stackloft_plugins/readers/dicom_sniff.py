@@ -13,16 +13,10 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from pathlib import Path
 
 _MAGIC = b"DICM"
 _HEAD = 144
-_REMEMBERED = 1 << 12
-"""Bytes: a scanner's header is seldom longer."""
-_known: ContextVar[dict[Path, bytes] | None] = ContextVar("first bytes of files", default=None)
 _FIRST_GROUPS = (0x0002, 0x0008)
 _LAST_ELEMENT = 0x0100
 """A bare data set begins with a low element: group length, character set, image type, SOP class."""
@@ -94,25 +88,6 @@ def first_bytes(path: Path, count: int) -> bytes:
     OSError
         The file cannot be opened or read.
     """
-    known = _known.get()
-    if known is None or count > _REMEMBERED:
-        return _read(path, count)
-    if path not in known:
-        known[path] = _read(path, _REMEMBERED)
-    return known[path][:count]
-
-
-@contextmanager
-def heads_remembered() -> Iterator[None]:
-    """Open each file once for its first bytes as long as this lasts, whoever looks at them."""
-    token = _known.set({})
-    try:
-        yield
-    finally:
-        _known.reset(token)
-
-
-def _read(path: Path, count: int) -> bytes:
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0))
     try:
         return os.read(handle, count)
