@@ -2,7 +2,7 @@
 
 Every contestant measures the same DICOM files in a child process of its own, one after the other, and is
 timed there with its imports done and the files in the system's cache; memory is what its peak lies above its
-imports. pydicom and stackloft take turns, as machines are shared and change their speed: medians are printed, of
+imports. pydicom and stackloft take turns, as machines are shared and change speed; medians are printed, of
 the ratios, which are taken pair by pair, the least and the greatest too.
 
     .venv/bin/python benchmarks/scan_speed.py [--slices 512] [--syntax explicit] [--rounds 7] [--no-peers]
