@@ -108,7 +108,11 @@ def test_traced_outlines_are_the_same_points():
     rng, traced = np.random.default_rng(3), 0
     for _ in range(SLICES):
         grey, level = random_slice(rng)
-        section = SectionField(grey, level, (3, 4), noise=random_noise(rng))
+        solid = solid_piece(grey, level, CRACKS)
+        if solid is None:
+            continue
+        outline = solid.outline + np.array([4, 3], np.int32)
+        section = SectionField(grey, level, (3, 4), noise=random_noise(rng), outline=outline)
         one = SliceToTrace(section, (0.5, 0.7), (grey.shape[0] + 9, grey.shape[1] + 9), "a")
         (points,) = single_outlines([one], TraceRules())
         if points is None:

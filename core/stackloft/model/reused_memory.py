@@ -16,16 +16,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-LARGE = 250_000
-"""Bytes: smaller arrays are left to the allocator."""
-_FEW = 3
-"""Pieces kept for the next ones to ask, whatever their size."""
+LARGE = 1_000_000
+"""Bytes: smaller arrays are left to the allocator, unless their maker asks for less."""
+SLICE = 250_000
+"""Bytes of a scan's small slice, which has pieces of its own, lest it take a photograph's."""
+_MOST = 3
+"""Large pieces kept for the next ones to ask."""
 _KEPT = 8_000_000
-"""Bytes up to which more of them are kept."""
+"""Bytes of smaller pieces kept likewise."""
 
 _lock = threading.RLock()  # the last view of an array may go while its own thread asks for another one
 _users = 0
 _free: list[NDArray[np.uint8]] = []
+_free_small: list[NDArray[np.uint8]] = []
 
 
 class _Lent:
@@ -38,13 +41,16 @@ class _Lent:
 
     def __del__(self) -> None:
         with _lock:
-            few = len(_free) < _FEW or sum(map(len, _free)) + len(self._memory) <= _KEPT
-            if _users and few:
+            if not _users:
+                return
+            if len(self._memory) >= LARGE and len(_free) < _MOST:
                 _free.append(self._memory)
+            if len(self._memory) < LARGE and sum(map(len, _free_small)) + len(self._memory) <= _KEPT:
+                _free_small.append(self._memory)
 
 
-def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
-    """Return an array that holds anything, as `numpy.empty` does.
+def empty(shape: tuple[int, ...], dtype: DTypeLike, least: int = LARGE) -> NDArray[Any]:
+    """Return an array that holds anything, as `numpy.empty` does; of `least` bytes or more from what is kept.
 
     Examples
     --------
@@ -57,7 +63,7 @@ def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
     """
     kind = np.dtype(dtype)
     size = math.prod(shape) * kind.itemsize
-    if not _users or size < LARGE:
+    if not _users or size < least:
         return np.empty(shape, kind)
     return np.asarray(_Lent(_taken(size), shape, kind))
 
@@ -75,14 +81,16 @@ def memory_reused() -> Iterator[None]:
             _users -= 1
             if not _users:
                 _free.clear()
+                _free_small.clear()
 
 
 def _taken(size: int) -> NDArray[np.uint8]:
     """Return the smallest free piece that is large enough, or a new one in place of one that is too small."""
+    pieces = _free if size >= LARGE else _free_small
     with _lock:
-        enough = [k for k, piece in enumerate(_free) if len(piece) >= size]
+        enough = [k for k, piece in enumerate(pieces) if len(piece) >= size]
         if enough:
-            return _free.pop(min(enough, key=lambda k: len(_free[k])))
-        if _free:
-            _free.pop(max(range(len(_free)), key=lambda k: len(_free[k])))
+            return pieces.pop(min(enough, key=lambda k: len(pieces[k])))
+        if pieces:
+            pieces.pop(max(range(len(pieces)), key=lambda k: len(pieces[k])))
     return np.frombuffer(mmap.mmap(-1, size), np.uint8)  # goes back to the system at once, when let go

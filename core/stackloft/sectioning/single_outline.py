@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from stackloft.compiled.level_line import Border, level_lines
-from stackloft.compiled.solid_piece import solid_piece
 from stackloft.model.arrays import FloatArray, read_only
 from stackloft.sectioning.slice_lines import SliceToTrace, TraceRules
-from stackloft.sectioning.voids import CRACKS
 
 
 def single_outlines(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[FloatArray | None]:
@@ -27,14 +25,9 @@ def single_outlines(slices: Sequence[SliceToTrace], rules: TraceRules) -> list[F
 
 
 def _border(one: SliceToTrace) -> Border | None:
+    """Return a body's known outline; what is not known yet is found sooner by `slice_lines`."""
     section = one.section
-    if section.local_levels is not None:
+    if section.local_levels is not None or section.outline is None:
         return None
-    if section.outline is not None:
-        chain = section.outline - (section.offset[1], section.offset[0])
-    else:
-        solid = solid_piece(section.values, section.level, CRACKS)
-        if solid is None:
-            return None
-        chain = solid.outline
+    chain = section.outline - (section.offset[1], section.offset[0])
     return Border(section.values, section.level, section.noise, chain, section.offset, one.spacing)

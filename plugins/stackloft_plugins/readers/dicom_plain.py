@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stackloft.model.reused_memory import empty
+from stackloft.model.reused_memory import SLICE, empty
 from stackloft_plugins.readers.dicom_sniff import first_bytes
 
 EXPLICIT_LITTLE = "1.2.840.10008.1.2.1"
@@ -57,7 +57,7 @@ class PlainSamples:
 
     def read(self, path: Path, shape: tuple[int, int]) -> NDArray[Any] | None:
         """Return the stored values, (rows, columns); None when the file is gone or too short."""
-        values = empty(shape, self.dtype)
+        values = empty(shape, self.dtype, SLICE)
         try:
             with path.open("rb", buffering=0) as stream:
                 stream.seek(self.at)

@@ -9,7 +9,7 @@ import numpy as np
 
 from stackloft.compiled.reading import Part, read_parts
 from stackloft.model.arrays import read_only
-from stackloft.model.reused_memory import empty
+from stackloft.model.reused_memory import SLICE, empty
 from stackloft.model.slice_stack import Picture
 from stackloft_plugins.readers.dicom_frame import Frame
 from stackloft_plugins.readers.dicom_pixels import fits_short
@@ -58,4 +58,4 @@ def _part(frame: Frame, shift: int) -> Part:
     samples = frame.samples_at
     if samples is None:
         raise TypeError(frame.name)
-    return Part(Path(frame.path), samples.at, empty(frame.shape, samples.dtype), shift)
+    return Part(Path(frame.path), samples.at, empty(frame.shape, samples.dtype, SLICE), shift)
