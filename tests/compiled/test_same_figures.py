@@ -7,7 +7,7 @@ import pytest
 from stackloft.compiled.coverage import Rings
 from stackloft.compiled.library import kernels, without_kernels
 from stackloft.compiled.smooth_curve import smooth_closed
-from stackloft.compiled.solid_piece import solid_piece
+from stackloft.compiled.solid_piece import solid_pieces
 from stackloft.geometry.noise_floor import NoiseFloor
 from stackloft.model.contour_stack import Loop
 from stackloft.model.segmentation import SectionField
@@ -72,7 +72,7 @@ def test_one_piece_is_found_where_opencv_finds_one_and_nowhere_else():
     for _ in range(SLICES):
         grey, level = random_slice(rng)
         body = np.ascontiguousarray(grey > level)
-        chains, found = single_piece(body.view(np.uint8)), solid_piece(grey, level, CRACKS)
+        chains, (found,) = single_piece(body.view(np.uint8)), solid_pieces([(grey, level)], CRACKS)
         assert (found is not None) == (len(chains) == 1)
         if found is None:
             others += 1
@@ -94,7 +94,7 @@ def test_background_is_closed_in_where_the_disc_closes_it():
             row, column = rng.integers(0, grey.shape[0]), rng.integers(0, grey.shape[1])
             grey[row : row + rng.integers(1, 5), column:] = 0
         framed = np.pad(grey, CRACKS.frame)
-        found = solid_piece(framed, level, CRACKS)
+        (found,) = solid_pieces([(framed, level)], CRACKS)
         if found is None:
             continue
         body = framed > level
@@ -108,7 +108,7 @@ def test_traced_outlines_are_the_same_points():
     rng, traced = np.random.default_rng(3), 0
     for _ in range(SLICES):
         grey, level = random_slice(rng)
-        solid = solid_piece(grey, level, CRACKS)
+        (solid,) = solid_pieces([(grey, level)], CRACKS)
         if solid is None:
             continue
         outline = solid.outline + np.array([4, 3], np.int32)

@@ -68,29 +68,23 @@ class Cracks:
     """Pixels around the body that are looked at."""
 
 
-def solid_piece(values: NDArray[Any], level: float, cracks: Cracks) -> SolidPiece | None:
-    """Return the body of a picture where it is so simple; None of others, or without compiled kernels.
+def solid_pieces(pictures: Sequence[tuple[NDArray[Any], float]], cracks: Cracks) -> list[SolidPiece | None]:
+    """Return the body of each picture where it is so simple; None of others, of all without compiled kernels.
 
     Parameters
     ----------
-    values : (rows, columns) array
-    level : float
-        Body where values > level.
+    pictures : sequence of ((rows, columns) array, float)
+        Grey levels and a level: body where they lie above it.
     cracks : Cracks
 
     Examples
     --------
     >>> grey = np.zeros((30, 40), np.int16)
     >>> grey[12:15, 14:19] = 7
-    >>> found = solid_piece(grey, 3.5, Cracks(np.array([2, 2, 0], np.int32), 20, 5))
+    >>> (found,) = solid_pieces([(grey, 3.5)], Cracks(np.array([2, 2, 0], np.int32), 20, 5))
     >>> found is None or (found.outline[0].tolist(), found.shape, found.pixels, found.open)
     ([14, 12], (3, 5), 15, True)
     """
-    return solid_pieces([(values, level)], cracks)[0]
-
-
-def solid_pieces(pictures: Sequence[tuple[NDArray[Any], float]], cracks: Cracks) -> list[SolidPiece | None]:
-    """Return the bodies of several pictures above their levels, as `solid_piece` does, in less time."""
     find = _find.here()
     seen = [pixels_of(values) for values, _ in pictures]
     if find is None or None in seen:

@@ -167,12 +167,12 @@ int bits_dilated(const bits *mask, bits *out, int radius, const int32_t *half)
         return 0;
     }
     memcpy(wide.words, mask->words, (size_t)mask->rows * (size_t)mask->width * sizeof(uint64_t));
-    int most = 0;
-    for (int dy = 0; dy <= radius; dy++)
+    int most = half ? 0 : radius;
+    for (int dy = 0; half && dy <= radius; dy++)
         most = half[dy] > most ? half[dy] : most;
     for (int reach = 0; reach <= most; reach++) { /* all rows of the disc that are so wide, together */
         for (int dy = -radius; dy <= radius; dy++) {
-            if (half[dy < 0 ? -dy : dy] != reach)
+            if ((half ? half[dy < 0 ? -dy : dy] : radius) != reach)
                 continue;
             int first = dy > 0 ? dy : 0, stop = dy > 0 ? mask->rows : mask->rows + dy;
             uint64_t *to = out->words;

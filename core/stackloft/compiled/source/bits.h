@@ -37,7 +37,8 @@ uint64_t bits_last_word(const bits *mask);
 /* Make 1 of 0 and 0 of 1. */
 void bits_turn_over(bits *mask);
 
-/* out = mask dilated by a disc whose row `dy` off the middle reaches half[|dy|] pixels to either side. */
+/* out = mask dilated by a disc whose row `dy` off the middle reaches half[|dy|] pixels to either side; by a square
+ * where half is NULL. */
 int bits_dilated(const bits *mask, bits *out, int radius, const int32_t *half);
 
 /* out = mask eroded by it; beyond the border lies more of the mask. */

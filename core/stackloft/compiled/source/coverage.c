@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bits.h"
+#include "gather.h"
 #include "threads.h"
 
 typedef struct {
@@ -12,7 +12,6 @@ typedef struct {
     int64_t down, right; /* from the current picture's first pixel to its own */
 } beside;
 
-enum { MOST_REACH = 16 };
 typedef struct {
     double *values; /* room for `room` values of the ring inside, then as much for the one outside */
     int64_t room;
@@ -92,36 +91,15 @@ static bits every(const bits *mask, int step)
     return few;
 }
 
-/* Take the field where two masks differ; return how many values there are, or -1 when there is no room. */
-INLINE int64_t taken(int kind, const pixels *picture, double level, const bits *a, const bits *b, int step, double *values,
-                     int64_t room)
-{
-    int64_t count = 0;
-    for (int row = 0; row < a->rows; row++)
-        for (int k = 0; k < a->width; k++)
-            for (uint64_t left = bits_row(a, row)[k] ^ bits_row(b, row)[k]; left; left &= left - 1) {
-                if (count == room)
-                    return -1;
-                int column = 64 * k + __builtin_ctzll(left);
-                values[count++] = grey_as(kind, picture, row * step, column * step) - level;
-            }
-    return count;
-}
-
 /* Take the field in the rings on either side of the edge zone, `reach` pixels wide in squares. */
 static int take_rings(const pixels *picture, double level, const bits *inside, const bits *near, rings *to)
 {
     bits few[2] = {every(inside, to->step), every(near, to->step)}, other[2] = {{0}, {0}};
-    int done = few[0].words && few[1].words && to->reach < MOST_REACH && (to->step == 1 || to->step == 2);
-    if (done) {
-        int32_t square[MOST_REACH];
-        for (int k = 0; k <= to->reach; k++)
-            square[k] = to->reach;
-        done = bits_eroded(few, other, to->reach, square) && bits_dilated(few + 1, other + 1, to->reach, square);
-    }
+    int done = few[0].words && few[1].words && (to->step == 1 || to->step == 2) &&
+               bits_eroded(few, other, to->reach, NULL) && bits_dilated(few + 1, other + 1, to->reach, NULL);
     for (int k = 0; done && k < 2; k++) {
         double *values = to->values + k * to->room;
-        to->counts[k] = taken(picture->kind, picture, level, few + k, other + k, to->step, values, to->room);
+        to->counts[k] = gathered(picture->kind, picture, level, few + k, other + k, to->step, values, to->room);
         done = to->counts[k] >= 0;
     }
     for (int k = 0; k < 2; k++)
