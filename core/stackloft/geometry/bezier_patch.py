@@ -19,11 +19,6 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-HERMITE_TO_BEZIER = np.array(
-    [[1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 1.0 / 3.0, 0.0], [0.0, 1.0, 0.0, -1.0 / 3.0], [0.0, 1.0, 0.0, 0.0]]
-)
-"""Bézier points of a cubic from (value 0, value 1, slope 0, slope 1) on the unit interval."""
-
 
 def bernstein(x: FloatArray) -> FloatArray:
     """Return the four cubic Bernstein polynomials at x, (g, 4) for (g,) x.
